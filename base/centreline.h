@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include "base/pose.h"
+
+namespace piperun {
+
+/// A point of a centreline: position, unit tangent and curvature vector (towards the bend's centre, length
+/// 1/R; zero on a straight).
+struct CentrelinePoint {
+  Vector3d p_W;
+  Vector3d tangent_W;
+  Vector3d curvature_W;
+};
+
+/// One piece of a pipe's centreline: a straight line, or a circular arc when curvature_1_m > 0. Consecutive
+/// pieces share position and tangent.
+struct CentrelinePiece {
+  double s_begin_m = 0;
+  double length_m = 0;
+  Vector3d p_begin_W = Vector3d::Zero();
+  Vector3d tangent_begin_W = Vector3d::UnitX();
+  Vector3d normal_begin_W = Vector3d::Zero();  ///< unit, towards the bend's centre; zero on a straight
+  double curvature_1_m = 0;
+
+  double s_end_m() const { return s_begin_m + length_m; }
+  bool straight() const { return curvature_1_m == 0; }
+};
+
+/// Point at distance s (same origin as s_begin_m). Beyond its ends a piece goes on as line or arc.
+CentrelinePoint EvalCentreline(const CentrelinePiece& piece, double s_m);
+
+/// Distance s of the point of the (extended) piece nearest to p. On an arc the half turn either side of its
+/// middle is searched; a point on the bend's axis has no nearest point and returns the middle.
+double FindNearest(const CentrelinePiece& piece, const Vector3d& p_W);
+
+/// The same piece walked from its end to its beginning, starting at s_begin_m.
+CentrelinePiece Reversed(const CentrelinePiece& piece, double s_begin_m);
+
+/// The polyline through `vertices` with every corner rounded by an arc of `bend_radius_m`, tangent at both
+/// ends. Throws InputError when two vertices coincide, the line turns back on itself, or an arc does not fit
+/// between its neighbours (the message names the corner and the largest radius that fits).
+std::vector<CentrelinePiece> RoundCorners(const std::vector<Vector3d>& vertices, double bend_radius_m);
+
+}  // namespace piperun

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+namespace piperun {
+
+/// A hole in the wall of a pipe: what the truth knows. Estimators never see this type.
+struct Leak {
+  std::string id;
+  int pipe = 0;
+  double s_m = 0;              ///< along the pipe from its `from` node
+  double hole_diameter_m = 0;
+  double discharge_coefficient = 0.6;
+};
+
+/// The same leak once the water is flowing.
+struct LeakState {
+  double flow_m3_s = 0;
+  double pressure_drop_Pa = 0;  ///< inside minus outside
+};
+
+}  // namespace piperun

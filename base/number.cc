@@ -1,0 +1,21 @@
+#include "base/number.h"
+
+#include <cmath>
+
+namespace piperun {
+
+std::string FormatNumber(double value) {
+  std::string text;
+  AppendNumber(text, value);
+  return text;
+}
+
+std::optional<double> ParseNumber(std::string_view text) {
+  if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+}  // namespace piperun

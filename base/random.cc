@@ -1,0 +1,54 @@
+#include "base/random.h"
+
+#include <Random123/philox.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace piperun {
+
+std::array<std::uint64_t, 4> Philox4x64(const std::array<std::uint64_t, 4>& counter,
+                                        const std::array<std::uint64_t, 2>& key) {
+  const r123::Philox4x64::ctr_type c{{counter[0], counter[1], counter[2], counter[3]}};
+  const r123::Philox4x64::key_type k{{key[0], key[1]}};
+  const auto r = r123::Philox4x64{}(c, k);
+  return {r[0], r[1], r[2], r[3]};
+}
+
+std::uint64_t HashName(std::string_view name) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : name) {
+    hash ^= static_cast<unsigned char>(c);
+    hash *= 0x100000001b3;
+  }
+  return hash;
+}
+
+RandomStream::RandomStream(std::uint64_t seed, std::string_view channel, std::uint64_t run)
+    : key_{seed, HashName(channel)}, run_(run) {}
+
+std::array<std::uint64_t, 4> RandomStream::Bits(std::uint64_t sample, std::uint64_t slot) const {
+  return Philox4x64({sample, slot, run_, 0}, key_);
+}
+
+std::array<double, 4> RandomStream::Uniforms(std::uint64_t sample, std::uint64_t slot) const {
+  const auto bits = Bits(sample, slot);
+  std::array<double, 4> u;
+  // the centres of 2^53 equal cells: never 0, never 1
+  for (std::size_t i = 0; i < 4; ++i) u[i] = (static_cast<double>(bits[i] >> 11) + 0.5) * 0x1p-53;
+  return u;
+}
+
+std::array<double, 4> RandomStream::Normals(std::uint64_t sample, std::uint64_t slot) const {
+  const auto u = Uniforms(sample, slot);
+  std::array<double, 4> n;
+  for (std::size_t i = 0; i < 4; i += 2) {
+    const double radius = std::sqrt(-2 * std::log(u[i]));
+    const double angle = 2 * std::numbers::pi * u[i + 1];
+    n[i] = radius * std::cos(angle);
+    n[i + 1] = radius * std::sin(angle);
+  }
+  return n;
+}
+
+}  // namespace piperun

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace piperun {
+
+/// Philox4x64-10 (Salmon, Moraes, Dror & Shaw, "Parallel random numbers: as easy as 1, 2, 3", SC 2011):
+/// a bijection of a 256-bit counter under a 128-bit key. No state, no memory.
+std::array<std::uint64_t, 4> Philox4x64(const std::array<std::uint64_t, 4>& counter,
+                                        const std::array<std::uint64_t, 2>& key);
+
+/// 64-bit FNV-1a of a name: offset basis 0xcbf29ce484222325, prime 0x100000001b3.
+std::uint64_t HashName(std::string_view name);
+
+/// Random numbers of one named channel in one run: a pure function of (seed, name, run, sample, slot), so
+/// that adding, removing or reordering channels changes nobody else's numbers. `sample` counts the channel's
+/// own samples; `slot` tells independent uses within a sample apart.
+class RandomStream {
+ public:
+  RandomStream(std::uint64_t seed, std::string_view channel, std::uint64_t run);
+
+  std::array<std::uint64_t, 4> Bits(std::uint64_t sample, std::uint64_t slot) const;
+  /// Uniform on the open interval (0, 1), 53 bits.
+  std::array<double, 4> Uniforms(std::uint64_t sample, std::uint64_t slot) const;
+  /// Standard normal by Box and Muller, exact in distribution up to |x| < 8.6.
+  std::array<double, 4> Normals(std::uint64_t sample, std::uint64_t slot) const;
+
+ private:
+  std::array<std::uint64_t, 2> key_;
+  std::uint64_t run_;
+};
+
+}  // namespace piperun

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/measurement.h"
+#include "base/network.h"
+#include "base/route.h"
+
+namespace piperun::estimator {
+
+/// The pipeline as the crew's drawings show it. It may be wrong; it is not the truth's network.
+struct RouteMap {
+  Network network;
+  Route route;
+};
+
+/// All an estimator is told before the first measurement. Never leaks, never truth.
+struct EstimatorStart {
+  std::optional<RouteMap> map;
+  double chainage_m = 0;
+  double chainage_sd_m = 0.01;
+  Vector3d p_W = Vector3d::Zero();          ///< launch position of the ball's centre
+  std::optional<double> heading_rad;        ///< direction of travel, from x (east) towards y (north); nothing: unknown
+  double heading_sd_rad = 0.02;
+  double ball_radius_m = 0.03;
+  double ball_radius_sd_m = 0;
+  double gravity_m_s2 = 9.80665;
+  Vector3d field_W_T = Vector3d::Zero();    ///< magnetic reference; zero: none
+  Pose X_BS;                                ///< mounting of the IMU as the designer drew it
+};
+
+/// Where the filter believes the ball to be, causal. Standard deviations are the filter's own.
+struct NavState {
+  RobotTime stamp{};
+  bool valid = false;  ///< false until the filter has aligned
+  Quaterniond q_WB = Quaterniond::Identity();
+  Vector3d p_W = Vector3d::Zero();
+  Vector3d v_W_m_s = Vector3d::Zero();
+  Vector3d gyro_bias_rad_s = Vector3d::Zero();
+  double chainage_m = 0;
+  double chainage_sd_m = 0;
+  Matrix3d attitude_covariance_rad2 = Matrix3d::Zero();  ///< of the error rotation in W
+  std::optional<double> nis;         ///< normalised innovation squared of the last vector update
+  int nis_dof = 0;
+};
+
+struct LeakEstimate {
+  RobotTime t_cpa{};  ///< closest point of approach
+  double chainage_m = 0;
+  double sigma_m = 0;
+  Vector3d p_W = Vector3d::Zero();
+  std::optional<double> flow_m3_s;
+  double confidence = 0;  ///< 0 to 1
+};
+
+/// What Finish() may add: the track again, using all measurements.
+struct SmoothedTrack {
+  std::vector<NavState> states;
+};
+
+/// A filter as the robot runs it. Fed in the loop or from a log, the same measurements give the same bits.
+class Estimator {
+ public:
+  virtual ~Estimator() = default;
+  /// Measurements arrive in the order (stamp, channel name, row).
+  virtual void Ingest(const Measurement& measurement) = 0;
+  virtual const NavState& nav() const = 0;
+  /// Leaks found so far, in order of t_cpa.
+  virtual const std::vector<LeakEstimate>& leaks() const = 0;
+  /// Called once after the last measurement: completes leaks(), may return a smoothed track.
+  virtual std::optional<SmoothedTrack> Finish() = 0;
+};
+
+}  // namespace piperun::estimator

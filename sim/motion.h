@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "base/network.h"
+#include "base/params.h"
+#include "base/route.h"
+#include "base/water.h"
+#include "sim/ball.h"
+#include "sim/flow_timeline.h"
+#include "sim/truth.h"
+
+namespace piperun::sim {
+
+enum class MotionStatus { kRunning, kArrived, kBallStuck, kLeftNetwork, kNotFinite };
+
+/// Everything a motion may need; it keeps references, the caller keeps the objects alive.
+struct MotionContext {
+  std::uint64_t seed = 0;
+  std::uint64_t run = 0;
+  Vector3d gravity_W{0, 0, -9.80665};
+  WaterProperties water;
+  const Network* network = nullptr;
+  const Route* route = nullptr;
+  const FlowTimeline* flow = nullptr;
+  BallParams ball;
+  double lateral_sd_m = 0;  ///< scatter of the launch position across the pipe
+  double stuck_after_s = 30;  ///< no progress for this long means stuck
+};
+
+/// A source of truth: the Bullet world, or a script. Deterministic in its context.
+class Motion {
+ public:
+  virtual ~Motion() = default;
+  virtual Rate rate() const = 0;
+  /// The start state, complete, before the first Step(); then the state after each step, complete (a motion
+  /// computes one step ahead where the velocity at an instant needs it).
+  virtual const TruthState& state() const = 0;
+  virtual void Step() = 0;
+  /// Anything but kRunning is final; the state that made it so is still delivered.
+  virtual MotionStatus status() const = 0;
+};
+
+struct MotionKind {
+  std::string_view name;
+  std::string_view doc;
+  std::unique_ptr<Params> (*make_params)();
+  /// Throws InputError for parameters that contradict each other or the context.
+  std::unique_ptr<Motion> (*make)(const Params& params, const MotionContext& context);
+};
+
+/// Generated from sim/motions/*.cc.
+const std::vector<MotionKind>& MotionKinds();
+
+}  // namespace piperun::sim

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/measurement.h"
+#include "base/params.h"
+#include "base/random.h"
+#include "sim/truth.h"
+
+namespace piperun::sim {
+
+struct SensorContext {
+  RandomStream random;  ///< the channel's own stream
+  ClockModel clock;
+  Vector3d gravity_W{0, 0, -9.80665};
+  Rate truth_rate{1000};
+};
+
+using SensorValue = std::variant<ImuSample, MagSample, PressureSample>;
+
+/// One measuring channel of the ball. Sample k is a pure function of (parameters, stream, truth up to its due
+/// time plus one physics step) and of the samples before it.
+class Sensor {
+ public:
+  virtual ~Sensor() = default;
+  virtual Rate rate() const = 0;
+  /// True time at which sample k (0, 1, ...) is complete. Interval sensors: SampleTime(k + 1); point sensors:
+  /// SampleTime(k).
+  virtual TrueTime DueTime(std::int64_t k) const = 0;
+  /// Called once per k, in order, when the window reaches at least one step past DueTime(k).
+  virtual SensorValue Sample(std::int64_t k, const TruthWindow& window) = 0;
+  /// Pose of the sensor frame in the ball.
+  virtual Pose X_BS() const = 0;
+};
+
+struct SensorKind {
+  std::string_view name;
+  std::string_view doc;
+  std::unique_ptr<Params> (*make_params)();
+  std::unique_ptr<Sensor> (*make)(const Params& params, const SensorContext& context);
+};
+
+/// Generated from sim/sensors/*.cc.
+const std::vector<SensorKind>& SensorKinds();
+
+}  // namespace piperun::sim
