@@ -19,6 +19,8 @@ add_library(piperun_flags INTERFACE)
 target_compile_options(piperun_flags INTERFACE -Wall -Wextra -Wconversion -ffp-contract=off)
 if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
   target_compile_options(piperun_flags INTERFACE -Wno-sign-conversion)  # as g++ reads -Wconversion
+else()
+  target_compile_options(piperun_flags INTERFACE -Wno-restrict)  # g++ 12 warns of std::string itself (PR 105651)
 endif()
 if(PIPERUN_WERROR)
   target_compile_options(piperun_flags INTERFACE -Werror)
