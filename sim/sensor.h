@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,12 @@ struct SensorContext {
   Rate truth_rate{1000};
 };
 
+/// What an IMU's slowly varying errors add up to now; EuRoC ground truth carries it beside the pose.
+struct ImuBias {
+  Vector3d gyro_rad_s = Vector3d::Zero();
+  Vector3d accel_m_s2 = Vector3d::Zero();
+};
+
 using SensorValue = std::variant<ImuSample, MagSample, PressureSample>;
 
 /// One measuring channel of the ball. Sample k is a pure function of (parameters, stream, truth up to its due
@@ -35,6 +42,8 @@ class Sensor {
   virtual SensorValue Sample(std::int64_t k, const TruthWindow& window) = 0;
   /// Pose of the sensor frame in the ball.
   virtual Pose X_BS() const = 0;
+  /// True additive bias at the last sample, for inertial sensors.
+  virtual std::optional<ImuBias> bias() const { return std::nullopt; }
 };
 
 struct SensorKind {

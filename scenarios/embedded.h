@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+namespace piperun::scenarios {
+
+/// A text file of the source tree that is part of the binary, so that an installed piperun needs no folder.
+struct EmbeddedFile {
+  std::string_view name;  ///< without folder and extension
+  std::string_view text;
+};
+
+const std::vector<EmbeddedFile>& EmbeddedScenarios();  ///< scenarios/library/*.yaml
+const std::vector<EmbeddedFile>& EmbeddedMaterials();  ///< assets/materials/*.yaml
+
+}  // namespace piperun::scenarios

@@ -1,0 +1,76 @@
+#include "scenarios/kind_entry.h"
+
+#include <algorithm>
+
+#include "acoustics/hydrophone.h"
+#include "acoustics/source.h"
+#include "base/check.h"
+#include "estimator/filter_kind.h"
+#include "sim/motion.h"
+#include "sim/sensor.h"
+
+namespace piperun::scenarios {
+namespace {
+
+template <class Kind>
+std::vector<KindOption> MakeOptions(const std::vector<Kind>& kinds) {
+  std::vector<KindOption> options;
+  for (const Kind& kind : kinds) options.push_back({kind.name, kind.doc, kind.make_params});
+  return options;
+}
+
+std::vector<KindOption> MakeSensorOptions() {
+  std::vector<KindOption> options = MakeOptions(sim::SensorKinds());
+  options.push_back({"hydrophone", "Hydrophone with its converter: everything the ball hears.",
+                     MakeParams<acoustics::HydrophoneParams>});
+  return options;
+}
+
+std::unique_ptr<Params> MakeParamsOf(KindEntry::Options options, std::string_view kind) {
+  const auto& all = options();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const KindOption& o) { return o.name == kind; });
+  Demand(found != all.end(), "a kind's name comes from its table");
+  return found->make_params();
+}
+
+}  // namespace
+
+const std::vector<KindOption>& SensorOptions() {
+  static const std::vector<KindOption> options = MakeSensorOptions();
+  return options;
+}
+const std::vector<KindOption>& MotionOptions() {
+  static const std::vector<KindOption> options = MakeOptions(sim::MotionKinds());
+  return options;
+}
+const std::vector<KindOption>& LeakSoundOptions() {
+  static const std::vector<KindOption> options = MakeOptions(acoustics::LeakSoundKinds());
+  return options;
+}
+const std::vector<KindOption>& FilterOptions() {
+  static const std::vector<KindOption> options = MakeOptions(estimator::FilterKinds());
+  return options;
+}
+
+KindEntry::KindEntry(Options options, std::string_view kind)
+    : options_(options), kind_(kind), params_(MakeParamsOf(options, kind)) {}
+
+KindEntry::KindEntry(const KindEntry& other)
+    : options_(other.options_), kind_(other.kind_), params_(other.params_->Clone()) {}
+
+KindEntry& KindEntry::operator=(const KindEntry& other) {
+  *this = KindEntry(other);
+  return *this;
+}
+
+void KindEntry::Visit(ParamVisitor& v) {
+  std::vector<std::string_view> names;
+  for (const KindOption& option : options_()) names.push_back(option.name);
+  const std::string before = kind_;
+  v.Choice({.name = "kind", .doc = "Which kind this is; the other keys depend on it.", .required = true}, names,
+           kind_);
+  if (kind_ != before) params_ = MakeParamsOf(options_, kind_);
+  params_->Visit(v);
+}
+
+}  // namespace piperun::scenarios

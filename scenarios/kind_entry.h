@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/params.h"
+
+namespace piperun::scenarios {
+
+/// A kind as the scenario file sees it: its name and what parameters it takes.
+struct KindOption {
+  std::string_view name;
+  std::string_view doc;
+  std::unique_ptr<Params> (*make_params)();
+};
+
+const std::vector<KindOption>& SensorOptions();  ///< the sensors of sim/, and the hydrophone
+const std::vector<KindOption>& MotionOptions();
+const std::vector<KindOption>& LeakSoundOptions();
+const std::vector<KindOption>& FilterOptions();
+
+/// "kind: NAME" and, beside it, the parameters of that kind. A value type.
+class KindEntry {
+ public:
+  using Options = const std::vector<KindOption>& (*)();
+  KindEntry(Options options, std::string_view kind);
+  KindEntry(const KindEntry& other);
+  KindEntry& operator=(const KindEntry& other);
+  KindEntry(KindEntry&&) noexcept = default;
+  KindEntry& operator=(KindEntry&&) noexcept = default;
+
+  const std::string& kind() const { return kind_; }
+  const Params& params() const { return *params_; }
+  Options options() const { return options_; }
+  /// Kind first, then the parameters of the kind just read.
+  void Visit(ParamVisitor& v);
+
+ private:
+  Options options_;
+  std::string kind_;
+  std::unique_ptr<Params> params_;
+};
+
+}  // namespace piperun::scenarios

@@ -1,0 +1,142 @@
+#include "scenarios/scenario.h"
+
+#include <array>
+
+#include "scenarios/materials.h"
+
+namespace piperun::scenarios {
+
+void WaterParams::Visit(ParamVisitor& v) {
+  v.Number({"temperature_C", "Water temperature; sets density, viscosity and speed of sound."},
+           Range::Between(0, 60), temperature_C);
+}
+
+void NodeEntry::Visit(ParamVisitor& v) {
+  v.Text({"id", "Name of the node.", true}, id);
+  v.Vector({"position_m", "East, north, up (elevation of the pipe's axis).", true}, Range::Between(-1e6, 1e6),
+           position_m);
+}
+
+void WallParams::Visit(ParamVisitor& v) {
+  v.Number({"young_modulus_Pa", "Young's modulus."}, Range::Positive(), young_modulus_Pa);
+  v.Number({"loss_factor", "Effective loss factor: wall, lining, joints, deposits."}, Range::Between(0, 1),
+           loss_factor);
+  v.Number({"poisson_ratio", "Poisson's ratio."}, {.min = 0, .max = 0.5}, poisson_ratio);
+  v.Number({"density_kg_m3", "Density of the wall."}, Range::Positive(), density_kg_m3);
+  v.Number({"roughness_m", "Equivalent sand-grain roughness of the bore."}, Range::NonNegative(), roughness_m);
+}
+
+void PipeEntry::Visit(ParamVisitor& v) {
+  v.Text({"id", "Name of the pipe.", true}, id);
+  v.Text({"from", "Node where the pipe's own length s begins.", true}, from);
+  v.Text({"to", "Node where it ends.", true}, to);
+  v.Number({"diameter_m", "Inner diameter (bore).", true}, {.min = 0.01, .max = 10}, diameter_m);
+  v.Number({"wall_thickness_m", "Wall thickness.", true}, {.min = 1e-4, .max = 1}, wall_thickness_m);
+  const std::vector<std::string_view> names = MaterialNames();
+  v.Choice({"material", "Wall material, a name from the material library."}, names, material);
+  wall = FindWall(material, wall);
+  v.Struct({"wall", "Properties of the wall, where they differ from the material's."}, wall);
+  v.Table({"vertices_m", "Corners between the nodes, rows of east, north, up."}, Range::Between(-1e6, 1e6), 3,
+          vertices_m);
+  v.Number({"bend_radius_m", "Radius of the axis in every corner; must exceed the bore's radius."},
+           Range::NonNegative(), bend_radius_m);
+}
+
+void NetworkParams::Visit(ParamVisitor& v) {
+  VectorParamList node_list(nodes), pipe_list(pipes);
+  v.List({"nodes", "Ends of pipes."}, node_list);
+  v.List({"pipes", "Pipes: straight lines with rounded corners, from node to node."}, pipe_list);
+}
+
+void FlowParams::Visit(ParamVisitor& v) {
+  v.Number({"inlet_m3_s", "Flow entering at the launch node."}, {.min = 0, .max = 100}, inlet_m3_s);
+  v.Number({"inlet_pressure_Pa", "Gauge pressure on the axis at the launch node."}, {.min = 0, .max = 1e8},
+           inlet_pressure_Pa);
+}
+
+void LeakEntry::Visit(ParamVisitor& v) {
+  v.Text({"id", "Name of the leak.", true}, id);
+  v.Text({"pipe", "Pipe it is on.", true}, pipe);
+  v.Number({"s_m", "Distance along that pipe from its `from` node.", true}, Range::NonNegative(), s_m);
+  v.Number({"hole_diameter_m", "Diameter of the (circular) hole.", true}, {.min = 0, .max = 0.1, .min_open = true},
+           hole_diameter_m);
+  v.Number({"cd", "Discharge coefficient of the hole."}, {.min = 0, .max = 1, .min_open = true}, cd);
+  v.Struct({"sound", "How it sounds."}, sound);
+}
+
+void MissionParams::Visit(ParamVisitor& v) {
+  v.Text({"launch", "Node where the ball is put in, at rest on the invert; chainage 0."}, launch);
+  v.Text({"retrieve", "Node where it is taken out."}, retrieve);
+  v.Number({"lateral_sd_m", "Scatter of the launch place around the wall, one sigma."}, Range::Between(0, 1),
+           lateral_sd_m);
+  v.Number({"time_limit_s", "The run ends here at the latest."}, {.min = 0.1, .max = 1e6}, time_limit_s);
+  v.Number({"stuck_after_s", "A ball that advances less than 1 cm in this time is stuck."}, {.min = 1, .max = 1e5},
+           stuck_after_s);
+}
+
+void StartParams::Visit(ParamVisitor& v) {
+  static constexpr std::array<std::string_view, 2> kMaps{"as_built", "none"};
+  static constexpr std::array<std::string_view, 3> kHeadings{"from_map", "given", "unknown"};
+  v.Choice({"map", "Drawings of the pipeline the filter gets."}, kMaps, map);
+  v.Choice({"heading", "Where the direction of travel at launch comes from."}, kHeadings, heading);
+  v.Number({"heading_rad", "Direction of travel at launch, from east towards north; used with heading: given."},
+           Range::Between(-7, 7), heading_rad);
+  v.Number({"heading_sd_rad", "Its standard deviation."}, {.min = 0, .max = 4, .min_open = true}, heading_sd_rad);
+  v.Number({"chainage_sd_m", "Standard deviation of the launch chainage."}, Range::Between(0, 1e3), chainage_sd_m);
+  v.NumberOr({"ball_radius_m", "Radius the filter believes in."}, {.min = 1e-3, .max = 5}, "as_built", ball_radius_m);
+  v.Number({"ball_radius_sd_m", "Its standard deviation."}, Range::Between(0, 1), ball_radius_sd_m);
+  v.Vector({"field_W_T", "Magnetic reference field: east, north, up."}, Range::Between(-1e-3, 1e-3), field_W_T);
+}
+
+void EstimatorEntry::Visit(ParamVisitor& v) {
+  kind.Visit(v);
+  v.Struct({"start", "What the filter is told before the launch."}, start);
+}
+
+void ScoreParams::Visit(ParamVisitor& v) {
+  v.Number({"match_radius_m", "An estimate farther than this from a leak does not count as finding it."},
+           {.min = 0, .max = 1e4, .min_open = true}, match_radius_m);
+}
+
+void OutputParams::Visit(ParamVisitor& v) {
+  static constexpr std::array<std::string_view, 2> kFormats{"wav", "flac"};
+  v.NumberOr({"truth_rate_Hz", "Rows per second of truth/ball.csv."}, {.min = 0.1, .max = 1e5}, "physics",
+             truth_rate_Hz);
+  v.Number({"track_rate_Hz", "Rows per second of every estimated track, where it is scored."},
+           {.min = 0.1, .max = 1e4}, track_rate_Hz);
+  v.Choice({"audio_format", "Container of the hydrophone record."}, kFormats, audio_format);
+}
+
+void ExpectEntry::Visit(ParamVisitor& v) {
+  v.Text({"path", "JSON pointer into run.json.", true}, path);
+  v.NumberOr({"min", "Smallest value allowed."}, Range::Any(), "none", min);
+  v.NumberOr({"max", "Largest value allowed."}, Range::Any(), "none", max);
+  v.Text({"equals", "Text the value must equal (empty: not compared)."}, equals);
+}
+
+void Scenario::Visit(ParamVisitor& v) {
+  static constexpr std::array<std::string_view, 1> kSchemas{"piperun.scenario/1"};
+  VectorParamList leak_list(leaks), expect_list(expect);
+  VectorParamMap sensor_map(sensors), estimator_map(estimators);
+  v.Choice({"schema", "Version of this file format.", true}, kSchemas, schema);
+  v.Text({"name", "Name of the scenario.", true}, name);
+  v.Text({"description", "One or two sentences about it."}, description);
+  v.Integer({"seed", "Seed of all noise."}, 0, INT64_MAX, seed);
+  v.Integer({"run", "Run index: another draw of everything random under the same seed."}, 0, INT64_MAX, run);
+  v.Number({"gravity_m_s2", "Gravity, along -z."}, {.min = 0, .max = 100}, gravity_m_s2);
+  v.Struct({"water", "The water."}, water);
+  v.Struct({"network", "The pipes."}, network);
+  v.Struct({"flow", "What enters at the launch node."}, flow);
+  v.Struct({"ambient", "What the hydrophone hears besides leaks."}, ambient);
+  v.List({"leaks", "Holes in the wall."}, leak_list);
+  v.Struct({"motion", "What moves the ball."}, motion);
+  v.Struct({"ball", "The ball."}, ball);
+  v.Struct({"mission", "Where it goes in and out, and when to give up."}, mission);
+  v.Map({"sensors", "Recording channels, by name."}, sensor_map);
+  v.Map({"estimators", "Filters in the loop, by name."}, estimator_map);
+  v.Struct({"score", "How estimates are compared with the truth."}, score);
+  v.Struct({"output", "What is written."}, output);
+  v.List({"expect", "What `piperun check` holds run.json to."}, expect_list);
+}
+
+}  // namespace piperun::scenarios

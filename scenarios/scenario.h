@@ -1,0 +1,154 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "acoustics/ambient.h"
+#include "base/params.h"
+#include "scenarios/kind_entry.h"
+#include "sim/ball.h"
+
+namespace piperun::scenarios {
+
+struct WaterParams {
+  double temperature_C = 10;
+  void Visit(ParamVisitor& v);
+};
+
+struct NodeEntry {
+  std::string id;
+  Vector3d position_m = Vector3d::Zero();
+  void Visit(ParamVisitor& v);
+};
+
+/// What a wall is made of. Read, it starts from the named material of the library; what the file says on top
+/// of that counts.
+struct WallParams {
+  double young_modulus_Pa = 0;
+  double loss_factor = 0;
+  double poisson_ratio = 0;
+  double density_kg_m3 = 0;
+  double roughness_m = 0;
+  void Visit(ParamVisitor& v);
+};
+
+struct PipeEntry {
+  std::string id;
+  std::string from;
+  std::string to;
+  double diameter_m = 0;
+  double wall_thickness_m = 0;
+  std::string material = "pvc_u";
+  WallParams wall;
+  std::vector<double> vertices_m;  ///< rows of three
+  double bend_radius_m = 0;
+  void Visit(ParamVisitor& v);
+};
+
+struct NetworkParams {
+  std::vector<NodeEntry> nodes;
+  std::vector<PipeEntry> pipes;
+  void Visit(ParamVisitor& v);
+};
+
+struct FlowParams {
+  double inlet_m3_s = 0;
+  double inlet_pressure_Pa = 0;
+  void Visit(ParamVisitor& v);
+};
+
+struct LeakEntry {
+  std::string id;
+  std::string pipe;
+  double s_m = 0;
+  double hole_diameter_m = 0;
+  double cd = 0.6;
+  KindEntry sound{LeakSoundOptions, "turbulent_jet"};
+  void Visit(ParamVisitor& v);
+};
+
+struct MissionParams {
+  std::string launch;
+  std::string retrieve;
+  double lateral_sd_m = 0;
+  double time_limit_s = 3600;
+  double stuck_after_s = 30;
+  void Visit(ParamVisitor& v);
+};
+
+struct SensorEntry {
+  std::string name;
+  KindEntry kind{SensorOptions, "imu"};
+  void Visit(ParamVisitor& v) { kind.Visit(v); }
+};
+
+/// What the crew tells a filter before the launch. Assumed values, never the truth's own.
+struct StartParams {
+  std::string map = "as_built";
+  std::string heading = "from_map";
+  double heading_rad = 0;
+  double heading_sd_rad = 0.02;
+  double chainage_sd_m = 0.01;
+  std::optional<double> ball_radius_m;  ///< nothing: as built
+  double ball_radius_sd_m = 0;
+  Vector3d field_W_T{2.6e-6, 25.1e-6, -40.4e-6};
+  void Visit(ParamVisitor& v);
+};
+
+struct EstimatorEntry {
+  std::string name;
+  KindEntry kind{FilterOptions, "quaternion_ekf"};
+  StartParams start;
+  void Visit(ParamVisitor& v);
+};
+
+struct ScoreParams {
+  double match_radius_m = 2;
+  void Visit(ParamVisitor& v);
+};
+
+struct OutputParams {
+  std::optional<double> truth_rate_Hz;  ///< nothing: every physics step
+  double track_rate_Hz = 20;
+  std::string audio_format = "wav";
+  void Visit(ParamVisitor& v);
+};
+
+/// A promise about run.json that `piperun check` holds a run to.
+struct ExpectEntry {
+  std::string path;  ///< JSON pointer
+  std::optional<double> min;
+  std::optional<double> max;
+  std::string equals;
+  void Visit(ParamVisitor& v);
+};
+
+/// One run of one ball, as a user writes it down. All values in SI.
+struct Scenario {
+  std::string schema = "piperun.scenario/1";
+  std::string name;
+  std::string description;
+  std::int64_t seed = 1;
+  std::int64_t run = 0;
+  double gravity_m_s2 = 9.80665;
+  WaterParams water;
+  NetworkParams network;
+  FlowParams flow;
+  acoustics::AmbientParams ambient;
+  std::vector<LeakEntry> leaks;
+  KindEntry motion{MotionOptions, "ball_in_pipe"};
+  sim::BallParams ball;
+  MissionParams mission;
+  std::vector<SensorEntry> sensors;
+  std::vector<EstimatorEntry> estimators;
+  ScoreParams score;
+  OutputParams output;
+  std::vector<ExpectEntry> expect;
+
+  void Visit(ParamVisitor& v);
+};
+
+}  // namespace piperun::scenarios

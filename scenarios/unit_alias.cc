@@ -1,0 +1,52 @@
+#include "scenarios/unit_alias.h"
+
+#include <numbers>
+
+namespace piperun::scenarios {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kStandardGravity = 9.80665;
+
+struct Spelling {
+  std::string_view si;
+  std::string_view other;
+  double factor;
+};
+
+// Longer SI suffixes stand before the shorter ones they end in.
+constexpr Spelling kSpellings[] = {
+    {"_rad_s2_sqrtHz", "_deg_s2_sqrtHz", kDegree},
+    {"_rad_s_sqrtHz", "_deg_s_sqrtHz", kDegree},
+    {"_m_s2_sqrtHz", "_ug_sqrtHz", 1e-6 * kStandardGravity},
+    {"_rad_s2", "_deg_s2", kDegree},
+    {"_rad_s", "_deg_s", kDegree},
+    {"_rad_s", "_deg_h", kDegree / 3600},
+    {"_m_s2", "_mg", 1e-3 * kStandardGravity},
+    {"_m_s2", "_ug", 1e-6 * kStandardGravity},
+    {"_m3_s", "_L_s", 1e-3},
+    {"_m3_s", "_L_min", 1e-3 / 60},
+    {"_m3_s", "_m3_h", 1.0 / 3600},
+    {"_rad", "_deg", kDegree},
+    {"_Pa", "_bar", 1e5},
+    {"_Pa", "_kPa", 1e3},
+    {"_T", "_uT", 1e-6},
+    {"_m", "_mm", 1e-3},
+    {"_m", "_cm", 1e-2},
+};
+
+}  // namespace
+
+std::vector<UnitAlias> FindUnitAliases(std::string_view si_key) {
+  std::vector<UnitAlias> aliases;
+  std::string_view suffix;
+  for (const Spelling& spelling : kSpellings) {
+    if (!si_key.ends_with(spelling.si) || (!suffix.empty() && spelling.si != suffix)) continue;
+    suffix = spelling.si;
+    const std::string_view stem = si_key.substr(0, si_key.size() - suffix.size());
+    aliases.push_back({std::string(stem) + std::string(spelling.other), spelling.factor});
+  }
+  return aliases;
+}
+
+}  // namespace piperun::scenarios
