@@ -10,20 +10,22 @@
 namespace piperun {
 namespace {
 
-constexpr double kMinTurn_rad = 1e-9;  // below this a vertex is no corner
-constexpr double kSlack_m = 1e-9;      // arcs may meet end to end within rounding
+constexpr double kMinEdge_m = 1e-6;
+constexpr double kMinTurn_rad = 1e-9;    // below this a vertex is no corner
+constexpr double kMinReturn_rad = 1e-3;  // this close to half a turn there is no arc
+constexpr double kSlack_m = 1e-9;        // arcs may meet end to end within rounding
+
+/// One straight of a polyline, vertex to vertex.
+struct Edge {
+  Vector3d tangent;
+  double length_m = 0;
+};
 
 /// What one vertex of a polyline costs its two edges.
 struct Corner {
   double turn_rad = 0;
   double tangent_length_m = 0;  // R tan(turn/2): from the vertex to where the arc begins
 };
-
-Corner MakeCorner(const Vector3d& t_in, const Vector3d& t_out, double radius_m) {
-  const double turn = std::atan2(t_in.cross(t_out).norm(), t_in.dot(t_out));
-  if (turn < kMinTurn_rad) return {};
-  return {turn, radius_m * std::tan(turn / 2)};
-}
 
 CentrelinePiece MakeLine(const Vector3d& p, const Vector3d& t, double length_m) {
   CentrelinePiece piece;
@@ -44,6 +46,55 @@ CentrelinePiece MakeArc(const Vector3d& p, const Vector3d& t_in, const Vector3d&
 std::string CornerName(std::size_t i, const Vector3d& p) {
   return "corner " + std::to_string(i) + " at [" + FormatNumber(p.x()) + ", " + FormatNumber(p.y()) + ", " +
          FormatNumber(p.z()) + "]";
+}
+
+std::vector<Edge> MakeEdges(const std::vector<Vector3d>& vertices) {
+  std::vector<Edge> edges;
+  for (std::size_t i = 0; i + 1 < vertices.size(); ++i) {
+    const Vector3d d = vertices[i + 1] - vertices[i];
+    const double length_m = d.norm();
+    if (!(length_m > kMinEdge_m)) {
+      throw InputError("two neighbouring vertices coincide (" + CornerName(i + 1, vertices[i + 1]) +
+                       "); a straight needs a length above " + FormatNumber(kMinEdge_m) + " m");
+    }
+    edges.push_back({d / length_m, length_m});
+  }
+  return edges;
+}
+
+Corner MakeCorner(const Vector3d& t_in, const Vector3d& t_out, double radius_m, const std::string& name) {
+  const double turn_rad = std::atan2(t_in.cross(t_out).norm(), t_in.dot(t_out));
+  if (turn_rad < kMinTurn_rad) return {};
+  if (turn_rad > std::numbers::pi - kMinReturn_rad)
+    throw InputError("the line turns back on itself at " + name);
+  if (!(radius_m > 0)) {
+    throw InputError(FormatNumber(radius_m) + " m is not allowed as radius of the bend at " + name +
+                     "; it must be > 0");
+  }
+  return {turn_rad, radius_m * std::tan(turn_rad / 2)};
+}
+
+/// The corners of a polyline; its first and last vertex cost nothing.
+std::vector<Corner> MakeCorners(const std::vector<Vector3d>& vertices, const std::vector<Edge>& edges,
+                                double radius_m) {
+  std::vector<Corner> corners(vertices.size());
+  for (std::size_t i = 1; i < edges.size(); ++i) {
+    corners[i] = MakeCorner(edges[i - 1].tangent, edges[i].tangent, radius_m, CornerName(i, vertices[i]));
+  }
+  return corners;
+}
+
+[[noreturn]] void RefuseBend(const std::string& corner, double edge_length_m, double needed_m,
+                             double radius_m) {
+  throw InputError("a bend of radius " + FormatNumber(radius_m) + " m does not fit at " + corner +
+                   ": the straight beside it is " + FormatNumber(edge_length_m) +
+                   " m long; the largest radius that fits there is " +
+                   FormatNumber(radius_m * edge_length_m / needed_m) + " m");
+}
+
+void Append(std::vector<CentrelinePiece>& pieces, CentrelinePiece piece) {
+  piece.s_begin_m = pieces.empty() ? 0 : pieces.back().s_end_m();
+  pieces.push_back(piece);
 }
 
 }  // namespace
@@ -85,47 +136,24 @@ CentrelinePiece Reversed(const CentrelinePiece& piece, double s_begin_m) {
 
 std::vector<CentrelinePiece> RoundCorners(const std::vector<Vector3d>& vertices, double bend_radius_m) {
   Demand(vertices.size() >= 2, "a polyline has at least two vertices");
-  const std::size_t edges = vertices.size() - 1;
-  std::vector<Vector3d> tangent(edges);
-  std::vector<double> length(edges);
-  for (std::size_t i = 0; i < edges; ++i) {
-    const Vector3d d = vertices[i + 1] - vertices[i];
-    length[i] = d.norm();
-    if (!(length[i] > 1e-6)) {
-      throw InputError("two neighbouring vertices coincide (" + CornerName(i + 1, vertices[i + 1]) +
-                       "); a pipe needs a length above 1e-6 m");
-    }
-    tangent[i] = d / length[i];
-  }
-  std::vector<Corner> corner(vertices.size());
-  for (std::size_t i = 1; i < edges; ++i) {
-    corner[i] = MakeCorner(tangent[i - 1], tangent[i], bend_radius_m);
-    if (corner[i].turn_rad > std::numbers::pi - 1e-3) {
-      throw InputError("the line turns back on itself at " + CornerName(i, vertices[i]));
-    }
-  }
-
+  const std::vector<Edge> edges = MakeEdges(vertices);
+  const std::vector<Corner> corners = MakeCorners(vertices, edges, bend_radius_m);
   std::vector<CentrelinePiece> pieces;
-  const auto append = [&pieces](CentrelinePiece piece) {
-    piece.s_begin_m = pieces.empty() ? 0 : pieces.back().s_end_m();
-    pieces.push_back(piece);
-  };
-  for (std::size_t i = 0; i < edges; ++i) {
-    const double free_m = length[i] - corner[i].tangent_length_m - corner[i + 1].tangent_length_m;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const Edge& edge = edges[i];
+    const Corner &begin = corners[i], &end = corners[i + 1];
+    const double needed_m = begin.tangent_length_m + end.tangent_length_m;
+    const double free_m = edge.length_m - needed_m;
     if (free_m < -kSlack_m) {
-      const double needed = corner[i].tangent_length_m + corner[i + 1].tangent_length_m;
-      throw InputError("a bend of radius " + FormatNumber(bend_radius_m) + " m does not fit at " +
-                       CornerName(i + 1 < edges ? i + 1 : i, vertices[i + 1 < edges ? i + 1 : i]) +
-                       ": the straight beside it is " + FormatNumber(length[i]) +
-                       " m long; the largest radius that fits is " +
-                       FormatNumber(bend_radius_m * length[i] / needed) + " m");
+      const std::size_t at = i + 1 < edges.size() ? i + 1 : i;
+      RefuseBend(CornerName(at, vertices[at]), edge.length_m, needed_m, bend_radius_m);
     }
     if (free_m > kSlack_m) {
-      append(MakeLine(vertices[i] + corner[i].tangent_length_m * tangent[i], tangent[i], free_m));
+      Append(pieces, MakeLine(vertices[i] + begin.tangent_length_m * edge.tangent, edge.tangent, free_m));
     }
-    if (corner[i + 1].turn_rad > 0) {
-      const Vector3d begin = vertices[i + 1] - corner[i + 1].tangent_length_m * tangent[i];
-      append(MakeArc(begin, tangent[i], tangent[i + 1], corner[i + 1].turn_rad, bend_radius_m));
+    if (end.turn_rad > 0) {
+      const Vector3d p_begin = vertices[i + 1] - end.tangent_length_m * edge.tangent;
+      Append(pieces, MakeArc(p_begin, edge.tangent, edges[i + 1].tangent, end.turn_rad, bend_radius_m));
     }
   }
   return pieces;

@@ -39,8 +39,10 @@ double FindNearest(const CentrelinePiece& piece, const Vector3d& p_W);
 CentrelinePiece Reversed(const CentrelinePiece& piece, double s_begin_m);
 
 /// The polyline through `vertices` with every corner rounded by an arc of `bend_radius_m`, tangent at both
-/// ends. Throws InputError when two vertices coincide, the line turns back on itself, or an arc does not fit
-/// between its neighbours (the message names the corner and the largest radius that fits).
+/// ends: a corner that turns by theta begins R tan(theta/2) before its vertex and is R theta long. Throws
+/// InputError when two vertices coincide, the line turns back on itself, the radius of a corner is not > 0,
+/// or an arc does not fit between its neighbours (the message names the corner and the largest radius that
+/// fits).
 std::vector<CentrelinePiece> RoundCorners(const std::vector<Vector3d>& vertices, double bend_radius_m);
 
 }  // namespace piperun

@@ -23,13 +23,11 @@ class InputError : public std::runtime_error {
   std::string where_;
 };
 
-/// Always-on check of our own promises: prints the message with its place and aborts. Never for user input.
-inline void Demand(bool condition, const char* message, const char* file = __builtin_FILE(),
-                   int line = __builtin_LINE());
-
 [[noreturn]] void AbortWith(const char* message, const char* file, int line);
 
-inline void Demand(bool condition, const char* message, const char* file, int line) {
+/// Always-on check of our own promises: prints the message with its place and aborts. Never for user input.
+inline void Demand(bool condition, const char* message, const char* file = __builtin_FILE(),
+                   int line = __builtin_LINE()) {
   if (!condition) [[unlikely]]
     AbortWith(message, file, line);
 }

@@ -8,7 +8,7 @@ namespace piperun {
 struct Leak {
   std::string id;
   int pipe = 0;
-  double s_m = 0;              ///< along the pipe from its `from` node
+  double s_m = 0;  ///< along the pipe from its `from` node
   double hole_diameter_m = 0;
   double discharge_coefficient = 0.6;
 };

@@ -1,7 +1,9 @@
 #include "base/network.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "base/check.h"
 #include "base/number.h"
@@ -16,14 +18,48 @@ std::optional<int> FindId(const std::vector<T>& items, std::string_view id) {
   return static_cast<int>(found - items.begin());
 }
 
+std::string ItemKey(const std::string& list, std::size_t i) { return list + "[" + std::to_string(i) + "]"; }
+
 void RequirePositive(double value, const std::string& key) {
-  if (!(value > 0)) throw InputError(FormatNumber(value) + " is not allowed; it must be > 0", key);
+  if (value > 0 && std::isfinite(value)) return;
+  throw InputError(FormatNumber(value) + " is not allowed; it must be a finite number > 0", key);
+}
+
+void RequireFinite(const Vector3d& p, const std::string& key) {
+  if (!p.allFinite()) throw InputError("a coordinate is not a finite number", key);
+}
+
+void RequireBendWiderThanBore(const PipeSpec& spec, const std::string& key) {
+  const double bore_radius_m = 0.5 * spec.diameter_m;
+  if (spec.vertices_m.empty()) return;
+  RequirePositive(spec.bend_radius_m, key);
+  if (spec.bend_radius_m > bore_radius_m) return;
+  throw InputError(FormatNumber(spec.bend_radius_m) +
+                       " m is too tight: a bend's radius must exceed the bore radius " +
+                       FormatNumber(bore_radius_m) + " m",
+                   key);
 }
 
 int ResolveNode(const std::vector<NodeSpec>& nodes, const std::string& id, const std::string& key) {
   const auto node = FindId(nodes, id);
   if (!node) throw InputError("there is no node '" + id + "'", key);
   return *node;
+}
+
+/// The polyline from -> vertices -> to with its corners rounded.
+std::vector<CentrelinePiece> BuildCentreline(const Vector3d& p_from, const Vector3d& p_to,
+                                             const PipeSpec& spec, const std::string& key) {
+  for (std::size_t i = 0; i < spec.vertices_m.size(); ++i) {
+    RequireFinite(spec.vertices_m[i], ItemKey(key + ".vertices_m", i));
+  }
+  std::vector<Vector3d> line{p_from};
+  line.insert(line.end(), spec.vertices_m.begin(), spec.vertices_m.end());
+  line.push_back(p_to);
+  try {
+    return RoundCorners(line, spec.bend_radius_m);
+  } catch (const InputError& e) {
+    throw InputError(e.problem(), key);
+  }
 }
 
 Pipe BuildPipe(const std::vector<NodeSpec>& nodes, const PipeSpec& spec, const std::string& key) {
@@ -33,32 +69,23 @@ Pipe BuildPipe(const std::vector<NodeSpec>& nodes, const PipeSpec& spec, const s
   pipe.to = ResolveNode(nodes, spec.to, key + ".to");
   RequirePositive(spec.diameter_m, key + ".diameter_m");
   RequirePositive(spec.wall_thickness_m, key + ".wall_thickness_m");
+  RequireBendWiderThanBore(spec, key + ".bend_radius_m");
   pipe.diameter_m = spec.diameter_m;
   pipe.wall_thickness_m = spec.wall_thickness_m;
   pipe.material = spec.material;
-  if (!spec.vertices_m.empty() && !(spec.bend_radius_m > 0.5 * spec.diameter_m)) {
-    throw InputError(FormatNumber(spec.bend_radius_m) + " m is too tight: a bend's radius must exceed the bore radius " +
-                         FormatNumber(0.5 * spec.diameter_m) + " m",
-                     key + ".bend_radius_m");
-  }
-  std::vector<Vector3d> line{nodes[static_cast<std::size_t>(pipe.from)].position_m};
-  line.insert(line.end(), spec.vertices_m.begin(), spec.vertices_m.end());
-  line.push_back(nodes[static_cast<std::size_t>(pipe.to)].position_m);
-  try {
-    pipe.centreline = RoundCorners(line, spec.bend_radius_m);
-  } catch (const InputError& e) {
-    throw InputError(e.problem(), key);
-  }
+  pipe.centreline = BuildCentreline(nodes[static_cast<std::size_t>(pipe.from)].position_m,
+                                    nodes[static_cast<std::size_t>(pipe.to)].position_m, spec, key);
   pipe.length_m = pipe.centreline.back().s_end_m();
   return pipe;
 }
 
 template <class T>
-void RefuseDuplicateIds(const std::vector<T>& items, const std::string& list) {
+void RequireUniqueIds(const std::vector<T>& items, const std::string& list) {
   for (std::size_t i = 0; i < items.size(); ++i) {
+    const std::string key = ItemKey(list, i) + ".id";
+    if (items[i].id.empty()) throw InputError("an id must not be empty", key);
     if (FindId(items, items[i].id) != static_cast<int>(i)) {
-      throw InputError("'" + items[i].id + "' is used twice; ids must be unique",
-                       list + "[" + std::to_string(i) + "].id");
+      throw InputError("'" + items[i].id + "' is used twice; ids must be unique", key);
     }
   }
 }
@@ -69,11 +96,14 @@ double Pipe::area_m2() const { return std::numbers::pi * radius_m() * radius_m()
 
 Network::Network(std::vector<NodeSpec> nodes, const std::vector<PipeSpec>& pipes) : nodes_(std::move(nodes)) {
   if (pipes.empty()) throw InputError("a network needs at least one pipe", "network.pipes");
-  RefuseDuplicateIds(nodes_, "network.nodes");
-  RefuseDuplicateIds(pipes, "network.pipes");
+  RequireUniqueIds(nodes_, "network.nodes");
+  RequireUniqueIds(pipes, "network.pipes");
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    RequireFinite(nodes_[i].position_m, ItemKey("network.nodes", i) + ".position_m");
+  }
   pipes_.reserve(pipes.size());
   for (std::size_t i = 0; i < pipes.size(); ++i) {
-    pipes_.push_back(BuildPipe(nodes_, pipes[i], "network.pipes[" + std::to_string(i) + "]"));
+    pipes_.push_back(BuildPipe(nodes_, pipes[i], ItemKey("network.pipes", i)));
   }
 }
 

@@ -31,7 +31,7 @@ struct PipeSpec {
   std::string to;
   double diameter_m = 0;  ///< bore
   double wall_thickness_m = 0;
-  double bend_radius_m = 0;  ///< of the centreline, at every vertex
+  double bend_radius_m = 0;  ///< of the centreline, at every vertex; not read when there is none
   std::vector<Vector3d> vertices_m;
   WallMaterial material;
 };
@@ -53,8 +53,9 @@ struct Pipe {
 /// An immutable pipe network: nodes, and pipes made of straight lines and circular bends.
 class Network {
  public:
-  /// Throws InputError with the key path of what is wrong: duplicate or unknown ids,
-  /// non-positive sizes, a bend tighter than the bore, a bend that does not fit, no pipe at all.
+  /// Throws InputError with the key path ("network.pipes[2].diameter_m") of what is wrong: an id that is
+  /// empty, used twice or unknown; a size that is not a finite number > 0; a coordinate that is not finite; a
+  /// bend tighter than the bore; a bend that does not fit; no pipe at all.
   Network(std::vector<NodeSpec> nodes, const std::vector<PipeSpec>& pipes);
 
   const std::vector<NodeSpec>& nodes() const { return nodes_; }

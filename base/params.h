@@ -21,9 +21,7 @@ struct Range {
   bool min_open = false;
   bool max_open = false;
 
-  bool Contains(double x) const {
-    return (min_open ? x > min : x >= min) && (max_open ? x < max : x <= max);
-  }
+  bool Contains(double x) const { return (min_open ? x > min : x >= min) && (max_open ? x < max : x <= max); }
   /// "[0, 1)", "> 0", ">= 0", "any number".
   std::string Text() const;
 

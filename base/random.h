@@ -22,9 +22,9 @@ class RandomStream {
   RandomStream(std::uint64_t seed, std::string_view channel, std::uint64_t run);
 
   std::array<std::uint64_t, 4> Bits(std::uint64_t sample, std::uint64_t slot) const;
-  /// Uniform on the open interval (0, 1), 53 bits.
+  /// Uniform on the open interval (0, 1): the centres of 2^52 equal cells.
   std::array<double, 4> Uniforms(std::uint64_t sample, std::uint64_t slot) const;
-  /// Standard normal by Box and Muller, exact in distribution up to |x| < 8.6.
+  /// Standard normal by Box and Muller (Ann. Math. Stat. 29, 610, 1958); |x| <= sqrt(106 ln 2) = 8.57.
   std::array<double, 4> Normals(std::uint64_t sample, std::uint64_t slot) const;
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <utility>
 
 #include "base/check.h"
 #include "base/number.h"
@@ -38,12 +39,11 @@ void AppendLeg(const Network& network, RouteLeg leg, std::vector<RoutePiece>& pi
 
 /// Pipe `b` must go on where pipe `a` ends: same place, same direction, same bore.
 void RequireSmoothJoint(const Network& network, const RoutePiece& a, const RoutePiece& b) {
-  const std::string names =
-      "pipes '" + network.pipe(a.pipe).id + "' and '" + network.pipe(b.pipe).id + "' ";
+  const std::string names = "pipes '" + network.pipe(a.pipe).id + "' and '" + network.pipe(b.pipe).id + "' ";
   const CentrelinePoint end = EvalCentreline(a.line, a.line.s_end_m());
   if ((end.p_W - b.line.p_begin_W).norm() > 1e-6) throw InputError(names + "do not meet", "network.pipes");
-  const double kink =
-      std::atan2(end.tangent_W.cross(b.line.tangent_begin_W).norm(), end.tangent_W.dot(b.line.tangent_begin_W));
+  const double kink = std::atan2(end.tangent_W.cross(b.line.tangent_begin_W).norm(),
+                                 end.tangent_W.dot(b.line.tangent_begin_W));
   if (kink > kMaxKink_rad) {
     throw InputError(names + "meet at an angle of " + FormatNumber(kink) +
                          " rad; move the corner into one pipe as a vertex, where it gets a bend",
@@ -58,11 +58,31 @@ void RequireSmoothJoint(const Network& network, const RoutePiece& a, const Route
 
 int OtherEnd(const Pipe& pipe, int node) { return pipe.from == node ? pipe.to : pipe.from; }
 
+constexpr int kUnreached = -1;
+
+/// The pipe by which a breadth-first walk from `launch_node` first reaches each node, or kUnreached.
+std::vector<int> SpreadFrom(const Network& network, int launch_node) {
+  std::vector<int> reached_by(network.nodes().size(), kUnreached);
+  std::deque<int> open{launch_node};
+  while (!open.empty()) {
+    const int node = open.front();
+    open.pop_front();
+    for (const int p : network.PipesAt(node)) {
+      const int next = OtherEnd(network.pipe(p), node);
+      if (next == launch_node || reached_by[static_cast<std::size_t>(next)] != kUnreached) continue;
+      reached_by[static_cast<std::size_t>(next)] = p;
+      open.push_back(next);
+    }
+  }
+  return reached_by;
+}
+
 }  // namespace
 
 Route::Route(const Network& network, std::vector<RouteLeg> legs) : legs_(std::move(legs)) {
   Demand(!legs_.empty(), "a route has at least one pipe");
   for (const RouteLeg& leg : legs_) {
+    Demand(leg.pipe >= 0 && leg.pipe < static_cast<int>(network.pipes().size()), "a leg's pipe exists");
     const std::size_t first = pieces_.size();
     AppendLeg(network, leg, pieces_);
     if (first > 0) RequireSmoothJoint(network, pieces_[first - 1], pieces_[first]);
@@ -95,27 +115,18 @@ std::optional<double> Route::Chainage(int pipe, double s_m) const {
 }
 
 Route FindRoute(const Network& network, int launch_node, int retrieve_node) {
+  const auto nodes = static_cast<int>(network.nodes().size());
+  Demand(launch_node >= 0 && launch_node < nodes, "the launch node exists");
+  Demand(retrieve_node >= 0 && retrieve_node < nodes, "the retrieve node exists");
   if (launch_node == retrieve_node) {
     throw InputError("launch and retrieve are the same node; give a loop two nodes where it closes",
                      "mission.retrieve");
   }
-  // breadth first; each node remembers the pipe by which it was reached
-  std::vector<int> reached_by(network.nodes().size(), -1);
-  std::deque<int> open{launch_node};
-  while (!open.empty() && reached_by[static_cast<std::size_t>(retrieve_node)] < 0) {
-    const int node = open.front();
-    open.pop_front();
-    for (const int p : network.PipesAt(node)) {
-      const int next = OtherEnd(network.pipe(p), node);
-      if (next == launch_node || reached_by[static_cast<std::size_t>(next)] >= 0) continue;
-      reached_by[static_cast<std::size_t>(next)] = p;
-      open.push_back(next);
-    }
-  }
+  const std::vector<int> reached_by = SpreadFrom(network, launch_node);
   std::vector<RouteLeg> legs;
   for (int node = retrieve_node; node != launch_node;) {
     const int p = reached_by[static_cast<std::size_t>(node)];
-    if (p < 0) throw InputError("no pipes lead there from the launch node", "mission.retrieve");
+    if (p == kUnreached) throw InputError("no pipes lead there from the launch node", "mission.retrieve");
     legs.push_back({p, network.pipe(p).to != node});
     node = OtherEnd(network.pipe(p), node);
   }

@@ -48,7 +48,8 @@ class Route {
   std::size_t FindPiece(double chainage_m, std::size_t hint = 0) const;
   CentrelinePoint Eval(double chainage_m, std::size_t hint = 0) const;
   PipePosition Locate(double chainage_m, std::size_t hint = 0) const;
-  /// Chainage of a position on a pipe, or nothing when the route does not use that pipe.
+  /// Chainage of a position on a pipe (the first, should the route pass it twice), or nothing when the route
+  /// does not use that pipe or the position lies beyond its ends.
   std::optional<double> Chainage(int pipe, double s_m) const;
 
  private:

@@ -11,8 +11,9 @@ Duration FromSeconds(double seconds) {
   return Duration(std::llround(seconds * 1e9));
 }
 
-Rate::Rate(double hertz) : micro_Hz_(std::llround(hertz * 1e6)) {
+Rate::Rate(double hertz) {
   Demand(hertz >= 1e-6 && hertz <= 1e9, "a rate lies between 1e-6 and 1e9 Hz");
+  micro_Hz_ = std::llround(hertz * 1e6);
 }
 
 Duration SampleOffset(std::int64_t k, Rate rate) {
@@ -21,6 +22,7 @@ Duration SampleOffset(std::int64_t k, Rate rate) {
   const Wide denominator = rate.micro_Hz();
   const Wide half = denominator / 2;
   const Wide rounded = (numerator + (numerator >= 0 ? half : -half)) / denominator;
+  Demand(rounded == static_cast<std::int64_t>(rounded), "a sample time must fit into 64-bit nanoseconds");
   return Duration(static_cast<std::int64_t>(rounded));
 }
 

@@ -46,19 +46,20 @@ class Rate {
   friend bool operator==(Rate, Rate) = default;
 
  private:
-  std::int64_t micro_Hz_;
+  std::int64_t micro_Hz_ = 0;
 };
 
-/// Time of sample k after sample 0: k / rate rounded to the nearest nanosecond. Never accumulates.
+/// Time of sample k after sample 0: k / rate rounded to the nearest nanosecond. Never accumulates. Range:
+/// |k / rate| < 2^63 ns (292 years); aborts outside.
 Duration SampleOffset(std::int64_t k, Rate rate);
 inline TrueTime SampleTime(std::int64_t k, Rate rate) { return TrueTime(SampleOffset(k, rate)); }
 
-/// The only converter between the two clocks: robot = true + offset + drift * true.
+/// The only converter between the two clocks: robot = true + offset + drift * true, drift > -1.
 struct ClockModel {
   Duration offset{0};
   double drift_ppm = 0;  ///< positive: the robot's clock runs fast
   RobotTime ToRobot(TrueTime t) const;
-  /// Inverse of ToRobot to the nearest nanosecond.
+  /// Inverse of ToRobot: ToTrue(ToRobot(t)) is t, to within the nanosecond that rounding may cost.
   TrueTime ToTrue(RobotTime t) const;
 };
 

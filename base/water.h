@@ -12,8 +12,8 @@ struct WaterProperties {
 
 /// Properties at a temperature, range 0 to 60 C (aborts outside):
 /// density by Kell, J. Chem. Eng. Data 20, 97 (1975), eq. 16, within 0.002 kg/m3;
-/// viscosity by Kestin, Sokolov & Wakeham, J. Phys. Chem. Ref. Data 7, 941 (1978), 1002 uPa s at 20 C, within 1 %;
-/// sound speed by Marczak, J. Acoust. Soc. Am. 102, 2776 (1997), within 0.02 m/s.
+/// viscosity by Kestin, Sokolov & Wakeham, J. Phys. Chem. Ref. Data 7, 941 (1978), 1002 uPa s at 20 C, within
+/// 1 %; sound speed by Marczak, J. Acoust. Soc. Am. 102, 2776 (1997), within 0.02 m/s.
 WaterProperties CalcWater(double temperature_C);
 
 }  // namespace piperun
