@@ -84,12 +84,14 @@ std::vector<Corner> MakeCorners(const std::vector<Vector3d>& vertices, const std
   return corners;
 }
 
+double FloorToMillimetre(double length_m) { return std::floor(1000 * length_m) / 1000; }
+
 [[noreturn]] void RefuseBend(const std::string& corner, double edge_length_m, double needed_m,
                              double radius_m) {
   throw InputError("a bend of radius " + FormatNumber(radius_m) + " m does not fit at " + corner +
                    ": the straight beside it is " + FormatNumber(edge_length_m) +
                    " m long; the largest radius that fits there is " +
-                   FormatNumber(radius_m * edge_length_m / needed_m) + " m");
+                   FormatNumber(FloorToMillimetre(radius_m * edge_length_m / needed_m)) + " m");
 }
 
 void Append(std::vector<CentrelinePiece>& pieces, CentrelinePiece piece) {
