@@ -1,0 +1,41 @@
+#include <algorithm>
+
+#include "acoustics/hydrophone.h"
+#include "acoustics/level.h"
+
+namespace piperun::acoustics {
+
+double HydrophoneParams::scale_Pa() const {
+  const auto largest_code = (std::int64_t{1} << (bits - 1)) - 1;
+  return full_scale_Pa / static_cast<double>(largest_code);
+}
+
+void HydrophoneParams::Visit(ParamVisitor& v) {
+  v.Number({.name = "rate_Hz", .doc = "sampling rate"}, Range::Between(1000, 384000), rate_Hz);
+  v.Integer({.name = "block_samples", .doc = "samples per audio block"}, 1, 1 << 24, block_samples);
+  v.Integer({.name = "bits", .doc = "resolution of the converter: 16 or 24"}, 16, 24, bits);
+  v.Number({.name = "full_scale_Pa", .doc = "pressure of the largest code"}, Range::Positive(),
+           full_scale_Pa);
+  v.Number({.name = "self_noise_dB_re_1uPa2_Hz",
+            .doc = "spectral level of sensor and preamplifier noise at 1 kHz, flat above 100 Hz, 1/f below"},
+           Range::Between(-200, 200), self_noise_dB_re_1uPa2_Hz);
+  v.Number({.name = "high_pass_Hz", .doc = "-3 dB corner of the first-order input stage"},
+           Range::NonNegative(), high_pass_Hz);
+  v.Number({.name = "face_radius_m", .doc = "radius of the sensitive face, which averages small eddies away"},
+           Range::Between(0, 0.1), face_radius_m);
+}
+
+double CalcHighPassGain(const HydrophoneParams& params, double f_Hz) {
+  const double f2 = f_Hz * f_Hz;
+  return f2 / (f2 + params.high_pass_Hz * params.high_pass_Hz);
+}
+
+double CalcSelfNoisePsd(const HydrophoneParams& params, double f_Hz) {
+  return CalcPressureSquared(params.self_noise_dB_re_1uPa2_Hz) * std::max(1.0, 100 / f_Hz);
+}
+
+double CalcConverterNoisePsd(const HydrophoneParams& params) {
+  return params.scale_Pa() * params.scale_Pa() / (6 * params.rate_Hz);
+}
+
+}  // namespace piperun::acoustics
