@@ -92,6 +92,12 @@ class ParamVisitor {
   void Struct(const ParamInfo& info, T& value) {
     Group(info, [&value](ParamVisitor& v) { value.Visit(v); });
   }
+  /// A list of structs with Visit.
+  template <class T>
+  void Items(const ParamInfo& info, std::vector<T>& items);
+  /// Structs with `std::string name` and Visit, by name.
+  template <class T>
+  void NamedItems(const ParamInfo& info, std::vector<T>& items);
 };
 
 /// Base of every kind's parameters.
@@ -146,5 +152,17 @@ class VectorParamMap : public ParamMap {
  private:
   std::vector<T>& items_;
 };
+
+template <class T>
+void ParamVisitor::Items(const ParamInfo& info, std::vector<T>& items) {
+  VectorParamList<T> list(items);
+  List(info, list);
+}
+
+template <class T>
+void ParamVisitor::NamedItems(const ParamInfo& info, std::vector<T>& items) {
+  VectorParamMap<T> map(items);
+  Map(info, map);
+}
 
 }  // namespace piperun

@@ -28,7 +28,8 @@ std::vector<KindOption> MakeSensorOptions() {
 
 std::unique_ptr<Params> MakeParamsOf(KindEntry::Options options, std::string_view kind) {
   const auto& all = options();
-  const auto found = std::find_if(all.begin(), all.end(), [&](const KindOption& o) { return o.name == kind; });
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const KindOption& o) { return o.name == kind; });
   Demand(found != all.end(), "a kind's name comes from its table");
   return found->make_params();
 }
@@ -67,8 +68,8 @@ void KindEntry::Visit(ParamVisitor& v) {
   std::vector<std::string_view> names;
   for (const KindOption& option : options_()) names.push_back(option.name);
   const std::string before = kind_;
-  v.Choice({.name = "kind", .doc = "Which kind this is; the other keys depend on it.", .required = true}, names,
-           kind_);
+  v.Choice({.name = "kind", .doc = "Which kind this is; the other keys depend on it.", .required = true},
+           names, kind_);
   if (kind_ != before) params_ = MakeParamsOf(options_, kind_);
   params_->Visit(v);
 }

@@ -23,7 +23,8 @@ std::size_t EditDistance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-std::optional<std::string> FindNearestName(const std::string& written, const std::vector<std::string>& known) {
+std::optional<std::string> FindNearestName(const std::string& written,
+                                           const std::vector<std::string>& known) {
   std::optional<std::string> nearest;
   std::size_t fewest = std::max<std::size_t>(written.size() / 2, 1) + 1;
   for (const std::string& name : known) {

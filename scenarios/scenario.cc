@@ -23,7 +23,8 @@ void WallParams::Visit(ParamVisitor& v) {
            loss_factor);
   v.Number({"poisson_ratio", "Poisson's ratio."}, {.min = 0, .max = 0.5}, poisson_ratio);
   v.Number({"density_kg_m3", "Density of the wall."}, Range::Positive(), density_kg_m3);
-  v.Number({"roughness_m", "Equivalent sand-grain roughness of the bore."}, Range::NonNegative(), roughness_m);
+  v.Number({"roughness_m", "Equivalent sand-grain roughness of the bore."}, Range::NonNegative(),
+           roughness_m);
 }
 
 void PipeEntry::Visit(ParamVisitor& v) {
@@ -43,9 +44,8 @@ void PipeEntry::Visit(ParamVisitor& v) {
 }
 
 void NetworkParams::Visit(ParamVisitor& v) {
-  VectorParamList node_list(nodes), pipe_list(pipes);
-  v.List({"nodes", "Ends of pipes."}, node_list);
-  v.List({"pipes", "Pipes: straight lines with rounded corners, from node to node."}, pipe_list);
+  v.Items({"nodes", "Ends of pipes."}, nodes);
+  v.Items({"pipes", "Pipes: straight lines with rounded corners, from node to node."}, pipes);
 }
 
 void FlowParams::Visit(ParamVisitor& v) {
@@ -58,8 +58,8 @@ void LeakEntry::Visit(ParamVisitor& v) {
   v.Text({"id", "Name of the leak.", true}, id);
   v.Text({"pipe", "Pipe it is on.", true}, pipe);
   v.Number({"s_m", "Distance along that pipe from its `from` node.", true}, Range::NonNegative(), s_m);
-  v.Number({"hole_diameter_m", "Diameter of the (circular) hole.", true}, {.min = 0, .max = 0.1, .min_open = true},
-           hole_diameter_m);
+  v.Number({"hole_diameter_m", "Diameter of the (circular) hole.", true},
+           {.min = 0, .max = 0.1, .min_open = true}, hole_diameter_m);
   v.Number({"cd", "Discharge coefficient of the hole."}, {.min = 0, .max = 1, .min_open = true}, cd);
   v.Struct({"sound", "How it sounds."}, sound);
 }
@@ -70,8 +70,8 @@ void MissionParams::Visit(ParamVisitor& v) {
   v.Number({"lateral_sd_m", "Scatter of the launch place around the wall, one sigma."}, Range::Between(0, 1),
            lateral_sd_m);
   v.Number({"time_limit_s", "The run ends here at the latest."}, {.min = 0.1, .max = 1e6}, time_limit_s);
-  v.Number({"stuck_after_s", "A ball that advances less than 1 cm in this time is stuck."}, {.min = 1, .max = 1e5},
-           stuck_after_s);
+  v.Number({"stuck_after_s", "A ball that advances less than 1 cm in this time is stuck."},
+           {.min = 1, .max = 1e5}, stuck_after_s);
 }
 
 void StartParams::Visit(ParamVisitor& v) {
@@ -79,13 +79,18 @@ void StartParams::Visit(ParamVisitor& v) {
   static constexpr std::array<std::string_view, 3> kHeadings{"from_map", "given", "unknown"};
   v.Choice({"map", "Drawings of the pipeline the filter gets."}, kMaps, map);
   v.Choice({"heading", "Where the direction of travel at launch comes from."}, kHeadings, heading);
-  v.Number({"heading_rad", "Direction of travel at launch, from east towards north; used with heading: given."},
-           Range::Between(-7, 7), heading_rad);
-  v.Number({"heading_sd_rad", "Its standard deviation."}, {.min = 0, .max = 4, .min_open = true}, heading_sd_rad);
-  v.Number({"chainage_sd_m", "Standard deviation of the launch chainage."}, Range::Between(0, 1e3), chainage_sd_m);
-  v.NumberOr({"ball_radius_m", "Radius the filter believes in."}, {.min = 1e-3, .max = 5}, "as_built", ball_radius_m);
+  v.Number(
+      {"heading_rad", "Direction of travel at launch, from east towards north; used with heading: given."},
+      Range::Between(-7, 7), heading_rad);
+  v.Number({"heading_sd_rad", "Its standard deviation."}, {.min = 0, .max = 4, .min_open = true},
+           heading_sd_rad);
+  v.Number({"chainage_sd_m", "Standard deviation of the launch chainage."}, Range::Between(0, 1e3),
+           chainage_sd_m);
+  v.NumberOr({"ball_radius_m", "Radius the filter believes in."}, {.min = 1e-3, .max = 5}, "as_built",
+             ball_radius_m);
   v.Number({"ball_radius_sd_m", "Its standard deviation."}, Range::Between(0, 1), ball_radius_sd_m);
-  v.Vector({"field_W_T", "Magnetic reference field: east, north, up."}, Range::Between(-1e-3, 1e-3), field_W_T);
+  v.Vector({"field_W_T", "Magnetic reference field: east, north, up."}, Range::Between(-1e-3, 1e-3),
+           field_W_T);
 }
 
 void EstimatorEntry::Visit(ParamVisitor& v) {
@@ -116,8 +121,6 @@ void ExpectEntry::Visit(ParamVisitor& v) {
 
 void Scenario::Visit(ParamVisitor& v) {
   static constexpr std::array<std::string_view, 1> kSchemas{"piperun.scenario/1"};
-  VectorParamList leak_list(leaks), expect_list(expect);
-  VectorParamMap sensor_map(sensors), estimator_map(estimators);
   v.Choice({"schema", "Version of this file format.", true}, kSchemas, schema);
   v.Text({"name", "Name of the scenario.", true}, name);
   v.Text({"description", "One or two sentences about it."}, description);
@@ -128,15 +131,15 @@ void Scenario::Visit(ParamVisitor& v) {
   v.Struct({"network", "The pipes."}, network);
   v.Struct({"flow", "What enters at the launch node."}, flow);
   v.Struct({"ambient", "What the hydrophone hears besides leaks."}, ambient);
-  v.List({"leaks", "Holes in the wall."}, leak_list);
+  v.Items({"leaks", "Holes in the wall."}, leaks);
   v.Struct({"motion", "What moves the ball."}, motion);
   v.Struct({"ball", "The ball."}, ball);
   v.Struct({"mission", "Where it goes in and out, and when to give up."}, mission);
-  v.Map({"sensors", "Recording channels, by name."}, sensor_map);
-  v.Map({"estimators", "Filters in the loop, by name."}, estimator_map);
+  v.NamedItems({"sensors", "Recording channels, by name."}, sensors);
+  v.NamedItems({"estimators", "Filters in the loop, by name."}, estimators);
   v.Struct({"score", "How estimates are compared with the truth."}, score);
   v.Struct({"output", "What is written."}, output);
-  v.List({"expect", "What `piperun check` holds run.json to."}, expect_list);
+  v.Items({"expect", "What `piperun check` holds run.json to."}, expect);
 }
 
 }  // namespace piperun::scenarios

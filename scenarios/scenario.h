@@ -9,6 +9,7 @@
 #include "acoustics/ambient.h"
 #include "base/params.h"
 #include "scenarios/kind_entry.h"
+#include "scenarios/yaml_document.h"
 #include "sim/ball.h"
 
 namespace piperun::scenarios {
@@ -147,6 +148,7 @@ struct Scenario {
   ScoreParams score;
   OutputParams output;
   std::vector<ExpectEntry> expect;
+  SourceMap sources;  ///< where each value stands in the file it was read from
 
   void Visit(ParamVisitor& v);
 };

@@ -42,6 +42,8 @@ class YamlDocument {
 
   /// Fills the structs that `visit` walks.
   void Read(const VisitFunction& visit, SourceMap* sources = nullptr) const;
+  /// The same, but other keys may stand beside those that `visit` asks for.
+  void ReadSome(const VisitFunction& visit) const;
 
  private:
   struct Impl;

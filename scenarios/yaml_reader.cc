@@ -35,7 +35,8 @@ struct ReadContext {
     const YAML::Mark mark = node.Mark();
     return mark.is_null() ? file : file + ":" + std::to_string(mark.line + 1);
   }
-  [[noreturn]] void Refuse(const YAML::Node& node, const std::string& path, const std::string& problem) const {
+  [[noreturn]] void Refuse(const YAML::Node& node, const std::string& path,
+                           const std::string& problem) const {
     throw InputError(problem, path, Where(node));
   }
 };
@@ -55,7 +56,8 @@ class MapReader : public ParamVisitor {
     if (!node_.IsMap()) context_.Refuse(node_, path_, "expected a map of keys, found " + Describe(node_));
     for (const auto& entry : node_) {
       const std::string key = entry.first.Scalar();
-      const bool twice = std::any_of(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.key == key; });
+      const bool twice =
+          std::any_of(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.key == key; });
       if (twice) context_.Refuse(entry.first, Child(path_, key), "this key is given twice");
       entries_.push_back({key, entry.first, entry.second, false});
     }
@@ -82,7 +84,8 @@ class MapReader : public ParamVisitor {
     if (found.entry->value.IsScalar() && found.entry->value.Scalar() == none) {
       value.reset();
     } else {
-      value = ReadNumber(found, found.entry->value, found.path, range, "a number or '" + std::string(none) + "'");
+      value =
+          ReadNumber(found, found.entry->value, found.path, range, "a number or '" + std::string(none) + "'");
     }
   }
 
@@ -94,8 +97,9 @@ class MapReader : public ParamVisitor {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), parsed);
     if (error != std::errc{} || end != text.data() + text.size()) Mistyped(found, "a whole number");
     if (parsed < min || parsed > max) {
-      context_.Refuse(found.entry->value, found.path,
-                      text + " is out of range; allowed: " + std::to_string(min) + " to " + std::to_string(max));
+      context_.Refuse(
+          found.entry->value, found.path,
+          text + " is out of range; allowed: " + std::to_string(min) + " to " + std::to_string(max));
     }
     value = parsed;
   }
@@ -130,7 +134,8 @@ class MapReader : public ParamVisitor {
     if (found.entry) ReadRow(found, found.entry->value, found.path, range, values);
   }
 
-  void Table(const ParamInfo& info, const Range& range, std::size_t columns, std::vector<double>& values) override {
+  void Table(const ParamInfo& info, const Range& range, std::size_t columns,
+             std::vector<double>& values) override {
     const Found found = Find(info, true);
     if (!found.entry) return;
     RequireList(found.entry->value, found.path);
@@ -193,18 +198,21 @@ class MapReader : public ParamVisitor {
     Found found;
     for (const UnitAlias& spelling : spellings) {
       known_.push_back(spelling.key);
-      const auto entry =
-          std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.key == spelling.key; });
+      const auto entry = std::find_if(entries_.begin(), entries_.end(),
+                                      [&](const Entry& e) { return e.key == spelling.key; });
       if (entry == entries_.end()) continue;
       const std::string path = Child(path_, spelling.key);
-      if (found.entry) context_.Refuse(entry->key_node, path, "the same value is already given as '" + found.entry->key + "'");
+      if (found.entry)
+        context_.Refuse(entry->key_node, path,
+                        "the same value is already given as '" + found.entry->key + "'");
       entry->used = true;
       found = {&*entry, path, spelling.factor};
     }
     if (found.entry) {
       Remember(Child(path_, info.name), found.entry->key_node);
     } else if (info.required) {
-      context_.Refuse(node_, path_, "the key '" + std::string(info.name) + "' is missing: " + std::string(info.doc));
+      context_.Refuse(node_, path_,
+                      "the key '" + std::string(info.name) + "' is missing: " + std::string(info.doc));
     }
     return found;
   }
@@ -214,7 +222,8 @@ class MapReader : public ParamVisitor {
   }
 
   [[noreturn]] void Mistyped(const Found& found, const std::string& expected) const {
-    context_.Refuse(found.entry->value, found.path, "expected " + expected + ", found " + Describe(found.entry->value));
+    context_.Refuse(found.entry->value, found.path,
+                    "expected " + expected + ", found " + Describe(found.entry->value));
   }
 
   std::string ReadScalar(const Found& found, const std::string& expected) const {
@@ -238,10 +247,12 @@ class MapReader : public ParamVisitor {
   void ReadRow(const Found& found, const YAML::Node& node, const std::string& path, const Range& range,
                std::span<double> values) const {
     if (!node.IsSequence() || node.size() != values.size()) {
-      context_.Refuse(node, path, "expected a list of " + std::to_string(values.size()) + " numbers, found " +
-                                      (node.IsSequence() ? std::to_string(node.size()) : Describe(node)));
+      context_.Refuse(node, path,
+                      "expected a list of " + std::to_string(values.size()) + " numbers, found " +
+                          (node.IsSequence() ? std::to_string(node.size()) : Describe(node)));
     }
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = ReadNumber(found, node[i], Item(path, i), range);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = ReadNumber(found, node[i], Item(path, i), range);
   }
 
   void ReadMap(const YAML::Node& node, const std::string& path, const VisitFunction& visit) const {
@@ -362,6 +373,12 @@ void YamlDocument::Read(const VisitFunction& visit, SourceMap* sources) const {
   MapReader reader(context, impl_->root, "");
   visit(reader);
   reader.Done();
+}
+
+void YamlDocument::ReadSome(const VisitFunction& visit) const {
+  const ReadContext context{impl_->name};
+  MapReader reader(context, impl_->root, "");
+  visit(reader);
 }
 
 std::string SourceMap::Find(std::string key_path) const {

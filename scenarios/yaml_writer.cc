@@ -16,7 +16,8 @@ class YamlWriter : public ParamVisitor {
     Key(info);
     out_ << FormatNumber(value);
   }
-  void NumberOr(const ParamInfo& info, const Range&, std::string_view none, std::optional<double>& value) override {
+  void NumberOr(const ParamInfo& info, const Range&, std::string_view none,
+                std::optional<double>& value) override {
     Key(info);
     out_ << (value ? FormatNumber(*value) : std::string(none));
   }
@@ -43,7 +44,8 @@ class YamlWriter : public ParamVisitor {
   void Table(const ParamInfo& info, const Range&, std::size_t columns, std::vector<double>& values) override {
     Key(info);
     out_ << YAML::BeginSeq;
-    for (std::size_t i = 0; i < values.size(); i += columns) Row(std::span<double>(values).subspan(i, columns));
+    for (std::size_t i = 0; i < values.size(); i += columns)
+      Row(std::span<double>(values).subspan(i, columns));
     out_ << YAML::EndSeq;
   }
   void Group(const ParamInfo& info, const VisitFunction& visit) override {

@@ -1,0 +1,67 @@
+#include "scenarios/channel.h"
+
+#include <cmath>
+
+namespace piperun::scenarios {
+
+SensorChannel::SensorChannel(int index, std::unique_ptr<sim::Sensor> sensor, Rate truth_rate)
+    : sensor_(std::move(sensor)), step_(SampleOffset(1, truth_rate) + Duration(1)) {
+  measurement_.channel = index;
+}
+
+const Measurement& SensorChannel::Take(const sim::TruthWindow& window) {
+  std::visit([this](const auto& value) { measurement_.value = value; }, sensor_->Sample(next_++, window));
+  return measurement_;
+}
+
+HydrophoneChannel::HydrophoneChannel(int index, const acoustics::HydrophoneParams& params,
+                                     acoustics::AcousticScene scene, const RandomStream& random,
+                                     const ClockModel& clock, const Route* route)
+    : hydrophone_(params, std::move(scene), random),
+      clock_(clock),
+      route_(route),
+      counts_(static_cast<std::size_t>(params.block_samples)) {
+  measurement_.channel = index;
+  measurement_.value = AudioBlock{{}, params.rate_Hz, params.scale_Pa(), counts_};
+}
+
+RobotTime HydrophoneChannel::StampOf(std::int64_t sample) const {
+  return clock_.ToRobot(TrueTime{}) + SampleOffset(sample, hydrophone_.rate());
+}
+
+TrueTime HydrophoneChannel::due() const {
+  return clock_.ToTrue(StampOf(next_sample_ + static_cast<std::int64_t>(counts_.size()) - 1));
+}
+
+Duration HydrophoneChannel::lookahead() const { return hydrophone_.lookahead(); }
+
+Duration HydrophoneChannel::history() const {
+  return SampleOffset(static_cast<std::int64_t>(counts_.size()), hydrophone_.rate()) +
+         hydrophone_.lookahead();
+}
+
+const Measurement& HydrophoneChannel::Take(const sim::TruthWindow& window) {
+  const RobotTime start = StampOf(0);
+  const auto listener = [&](TrueTime recorder_time) {
+    const TrueTime t = clock_.ToTrue(start + recorder_time.time_since_epoch());
+    return CalcListener(sim::Interpolate(window, std::max(t, TrueTime{})), route_);
+  };
+  hydrophone_.Render(listener, counts_);
+  next_sample_ += static_cast<std::int64_t>(counts_.size());
+  std::get<AudioBlock>(measurement_.value).stamp = StampOf(next_sample_ - 1);
+  return measurement_;
+}
+
+acoustics::ListenerState CalcListener(const sim::TruthState& truth, const Route* route) {
+  acoustics::ListenerState listener;
+  listener.chainage_m = truth.chainage_m;
+  listener.water_speed_m_s = truth.water_speed_m_s;
+  if (!route) return listener;
+  const std::size_t piece = route->FindPiece(truth.chainage_m);
+  listener.bore_radius_m = route->pieces()[piece].radius_m;
+  const double ball_speed = truth.v_WB_W.dot(route->Eval(truth.chainage_m, piece).tangent_W);
+  listener.slip_speed_m_s = std::abs(truth.water_speed_m_s - ball_speed);
+  return listener;
+}
+
+}  // namespace piperun::scenarios

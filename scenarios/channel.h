@@ -1,0 +1,71 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "acoustics/hydrophone.h"
+#include "base/measurement.h"
+#include "base/route.h"
+#include "sim/sensor.h"
+#include "sim/truth.h"
+
+namespace piperun::scenarios {
+
+/// One recording channel in the run loop, whatever records behind it.
+class Channel {
+ public:
+  virtual ~Channel() = default;
+  /// When the next measurement is complete, and how far beyond that the truth must reach to take it.
+  virtual TrueTime due() const = 0;
+  virtual Duration lookahead() const = 0;
+  /// The longest stretch of truth a measurement looks back on.
+  virtual Duration history() const = 0;
+  /// Takes the next measurement; valid until the next call.
+  virtual const Measurement& Take(const sim::TruthWindow& window) = 0;
+};
+
+/// A channel over one of sim's sensors. `index` becomes Measurement::channel.
+class SensorChannel : public Channel {
+ public:
+  SensorChannel(int index, std::unique_ptr<sim::Sensor> sensor, Rate truth_rate);
+  TrueTime due() const override { return sensor_->DueTime(next_); }
+  Duration lookahead() const override { return step_; }
+  Duration history() const override { return SampleOffset(1, sensor_->rate()); }
+  const Measurement& Take(const sim::TruthWindow& window) override;
+  const sim::Sensor& sensor() const { return *sensor_; }
+
+ private:
+  std::unique_ptr<sim::Sensor> sensor_;
+  Duration step_;
+  std::int64_t next_ = 0;
+  Measurement measurement_;
+};
+
+/// A channel over the hydrophone. Its converter runs on the robot's clock: sample n is taken when that clock
+/// shows n / rate after the start.
+class HydrophoneChannel : public Channel {
+ public:
+  HydrophoneChannel(int index, const acoustics::HydrophoneParams& params, acoustics::AcousticScene scene,
+                    const RandomStream& random, const ClockModel& clock, const Route* route);
+  TrueTime due() const override;
+  Duration lookahead() const override;
+  Duration history() const override;
+  const Measurement& Take(const sim::TruthWindow& window) override;
+  std::int64_t clipped_samples() const { return hydrophone_.clipped_samples(); }
+
+ private:
+  RobotTime StampOf(std::int64_t sample) const;
+
+  acoustics::Hydrophone hydrophone_;
+  ClockModel clock_;
+  const Route* route_;
+  std::int64_t next_sample_ = 0;
+  std::vector<std::int32_t> counts_;
+  Measurement measurement_;
+};
+
+/// What a hydrophone in the ball knows of its surroundings.
+acoustics::ListenerState CalcListener(const sim::TruthState& truth, const Route* route);
+
+}  // namespace piperun::scenarios

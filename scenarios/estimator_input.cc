@@ -1,0 +1,153 @@
+#include "scenarios/estimator_input.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/check.h"
+#include "estimator/filter_kind.h"
+#include "scenarios/network_params.h"
+
+namespace piperun::scenarios {
+namespace {
+
+std::string TypeOfChannel(const Scenario& scenario, const std::string& name) {
+  const auto entry = std::find_if(scenario.sensors.begin(), scenario.sensors.end(),
+                                  [&](const SensorEntry& e) { return e.name == name; });
+  const std::string& kind = entry->kind.kind();
+  return kind == "hydrophone" ? "audio" : kind;
+}
+
+double HeadingFromMap(const Assembly& assembly) {
+  const Vector3d t = assembly.route->Eval(0).tangent_W;
+  return std::atan2(t.y(), t.x());
+}
+
+ToldParams Tell(const StartParams& start, const Scenario& scenario, const Assembly& assembly,
+                const std::string& key_path) {
+  ToldParams told;
+  told.map = start.map == "as_built" && assembly.route;
+  if (start.heading == "from_map") {
+    if (!told.map) {
+      throw InputError("there is no map to take the heading from; say 'heading: given' or 'heading: unknown'",
+                       key_path + ".heading", scenario.sources.Find(key_path));
+    }
+    told.heading_rad = HeadingFromMap(assembly);
+  } else if (start.heading == "given") {
+    told.heading_rad = start.heading_rad;
+  }
+  told.chainage_m = assembly.motion->state().chainage_m;
+  told.chainage_sd_m = start.chainage_sd_m;
+  told.p_W = assembly.motion->state().X_WB.p;
+  told.heading_sd_rad = start.heading_sd_rad;
+  told.ball_radius_m = start.ball_radius_m.value_or(scenario.ball.radius_m);
+  told.ball_radius_sd_m = start.ball_radius_sd_m;
+  told.gravity_m_s2 = scenario.gravity_m_s2;
+  told.field_W_T = start.field_W_T;
+  if (assembly.imu) {
+    const Pose X_BS = assembly.imu->sensor().X_BS();
+    told.p_BS_m = X_BS.p;
+    std::copy_n(std::array{X_BS.q.w(), X_BS.q.x(), X_BS.q.y(), X_BS.q.z()}.begin(), 4, told.q_BS);
+  }
+  return told;
+}
+
+estimator::EstimatorStart MakeStart(const EstimatorInput& input, const ToldParams& told) {
+  estimator::EstimatorStart start;
+  if (told.map) {
+    Network network = MakeNetwork(input.map.network);
+    Route route = MakeRoute(network, input.map.launch, input.map.retrieve, "map");
+    start.map.emplace(estimator::RouteMap{std::move(network), std::move(route)});
+  }
+  start.chainage_m = told.chainage_m;
+  start.chainage_sd_m = told.chainage_sd_m;
+  start.p_W = told.p_W;
+  start.heading_rad = told.heading_rad;
+  start.heading_sd_rad = told.heading_sd_rad;
+  start.ball_radius_m = told.ball_radius_m;
+  start.ball_radius_sd_m = told.ball_radius_sd_m;
+  start.gravity_m_s2 = told.gravity_m_s2;
+  start.field_W_T = told.field_W_T;
+  start.X_BS = {told.p_BS_m, Quaterniond(told.q_BS[0], told.q_BS[1], told.q_BS[2], told.q_BS[3])};
+  return start;
+}
+
+}  // namespace
+
+void MapParams::Visit(ParamVisitor& v) {
+  v.Struct({"network", "Nodes and pipes as drawn."}, network);
+  v.Text({"launch", "Node where the ball goes in."}, launch);
+  v.Text({"retrieve", "Node where it comes out."}, retrieve);
+}
+
+void ToldParams::Visit(ParamVisitor& v) {
+  v.Flag({"map", "Whether this filter gets the map."}, map);
+  v.Number({"chainage_m", "Chainage at launch."}, Range::Any(), chainage_m);
+  v.Number({"chainage_sd_m", "Its standard deviation."}, Range::NonNegative(), chainage_sd_m);
+  v.Vector({"p_W_m", "Launch position of the ball's centre."}, Range::Any(), p_W);
+  v.NumberOr({"heading_rad", "Direction of travel at launch, from east towards north."}, Range::Any(),
+             "unknown", heading_rad);
+  v.Number({"heading_sd_rad", "Its standard deviation."}, Range::NonNegative(), heading_sd_rad);
+  v.Number({"ball_radius_m", "Nominal radius."}, Range::Positive(), ball_radius_m);
+  v.Number({"ball_radius_sd_m", "Its standard deviation."}, Range::NonNegative(), ball_radius_sd_m);
+  v.Number({"gravity_m_s2", "Gravity."}, Range::NonNegative(), gravity_m_s2);
+  v.Vector({"field_W_T", "Magnetic reference field: east, north, up."}, Range::Any(), field_W_T);
+  v.Vector({"p_BS_m", "IMU in the ball, as drawn."}, Range::Any(), p_BS_m);
+  v.Array({"q_BS", "Its orientation, w x y z."}, Range::Between(-1, 1), q_BS);
+}
+
+void ToldEstimator::Visit(ParamVisitor& v) {
+  kind.Visit(v);
+  v.Struct({"start", "What it is told before the launch."}, start);
+}
+
+void RecordedChannel::Visit(ParamVisitor& v) {
+  static constexpr std::array<std::string_view, 4> kTypes{"imu", "magnetometer", "pressure", "audio"};
+  v.Text({"name", "Folder under mav0/.", true}, name);
+  v.Choice({"type", "What it records.", true}, kTypes, type);
+}
+
+void EstimatorInput::Visit(ParamVisitor& v) {
+  static constexpr std::array<std::string_view, 1> kSchemas{"piperun.estimator_input/1"};
+  v.Choice({"schema", "Version of this file format.", true}, kSchemas, schema);
+  v.Number({"track_rate_Hz", "How often the track is written."}, Range::Positive(), track_rate_Hz);
+  v.Items({"channels", "What was recorded."}, channels);
+  v.Struct({"map", "Drawings of the pipeline."}, map);
+  v.NamedItems({"estimators", "Filters, by name."}, estimators);
+}
+
+EstimatorInput MakeEstimatorInput(const Scenario& scenario, const Assembly& assembly) {
+  EstimatorInput input;
+  input.track_rate_Hz = scenario.output.track_rate_Hz;
+  for (const std::string& name : assembly.channel_names) {
+    input.channels.push_back({name, TypeOfChannel(scenario, name)});
+  }
+  input.map = {scenario.network, scenario.mission.launch, scenario.mission.retrieve};
+  for (const EstimatorEntry& entry : scenario.estimators) {
+    input.estimators.push_back(
+        {entry.name, entry.kind,
+         Tell(entry.start, scenario, assembly, "estimators." + entry.name + ".start")});
+  }
+  return input;
+}
+
+EstimatorInput LoadEstimatorInput(const std::string& path) {
+  EstimatorInput input;
+  YamlDocument::FromFile(path).Read([&](ParamVisitor& v) { input.Visit(v); });
+  return input;
+}
+
+std::unique_ptr<estimator::Estimator> MakeEstimator(const EstimatorInput& input, const ToldEstimator& told) {
+  const auto& kinds = estimator::FilterKinds();
+  const auto kind =
+      std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.name == told.kind.kind(); });
+  Demand(kind != kinds.end(), "a filter's kind was checked when it was read");
+  try {
+    return kind->make(told.kind.params(), MakeStart(input, told.start));
+  } catch (const InputError& e) {
+    throw InputError(e.problem(),
+                     "estimators." + told.name + (e.key_path().empty() ? "" : "." + e.key_path()));
+  }
+}
+
+}  // namespace piperun::scenarios

@@ -1,0 +1,45 @@
+#include "scenarios/network_params.h"
+
+#include "base/check.h"
+
+namespace piperun::scenarios {
+namespace {
+
+WallMaterial MakeMaterial(const PipeEntry& entry) {
+  const WallParams& wall = entry.wall;
+  return {entry.material,     wall.young_modulus_Pa, wall.loss_factor,
+          wall.poisson_ratio, wall.density_kg_m3,    wall.roughness_m};
+}
+
+int ResolveNode(const Network& network, const std::string& id, const std::string& key) {
+  if (id.empty()) throw InputError("the node is missing; name a node of the network", key);
+  const auto node = network.FindNode(id);
+  if (!node) throw InputError("there is no node '" + id + "'", key);
+  return *node;
+}
+
+}  // namespace
+
+Network MakeNetwork(const NetworkParams& params) {
+  std::vector<NodeSpec> nodes;
+  for (const NodeEntry& entry : params.nodes) nodes.push_back({entry.id, entry.position_m});
+  std::vector<PipeSpec> pipes;
+  for (const PipeEntry& entry : params.pipes) {
+    PipeSpec spec{
+        entry.id, entry.from,         entry.to, entry.diameter_m, entry.wall_thickness_m, entry.bend_radius_m,
+        {},       MakeMaterial(entry)};
+    for (std::size_t i = 0; i < entry.vertices_m.size(); i += 3) {
+      spec.vertices_m.emplace_back(entry.vertices_m[i], entry.vertices_m[i + 1], entry.vertices_m[i + 2]);
+    }
+    pipes.push_back(std::move(spec));
+  }
+  return Network(std::move(nodes), pipes);
+}
+
+Route MakeRoute(const Network& network, const std::string& launch, const std::string& retrieve,
+                const std::string& group) {
+  return FindRoute(network, ResolveNode(network, launch, group + ".launch"),
+                   ResolveNode(network, retrieve, group + ".retrieve"));
+}
+
+}  // namespace piperun::scenarios

@@ -1,0 +1,182 @@
+#include "scenarios/replay.h"
+
+#include <array>
+#include <vector>
+
+#include "acoustics/audio_file.h"
+#include "base/check.h"
+#include "scenarios/csv_reader.h"
+#include "scenarios/measurement_writer.h"
+#include "scenarios/yaml_document.h"
+
+namespace piperun::scenarios {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One channel's record, one measurement ahead.
+class ChannelLog {
+ public:
+  explicit ChannelLog(int channel) { measurement_.channel = channel; }
+  virtual ~ChannelLog() = default;
+  const Measurement& current() const { return measurement_; }
+  bool Advance() {
+    const RobotTime before = Stamp(measurement_);
+    if (!Read()) return false;
+    if (started_ && Stamp(measurement_) < before) throw InputError("time goes backwards", "", Name());
+    started_ = true;
+    return true;
+  }
+
+ protected:
+  virtual bool Read() = 0;
+  virtual std::string Name() const = 0;
+  Measurement measurement_;
+
+ private:
+  bool started_ = false;
+};
+
+RobotTime ToStamp(std::int64_t ns) { return RobotTime(Duration(ns)); }
+
+class CsvLog : public ChannelLog {
+ public:
+  CsvLog(int channel, const fs::path& folder)
+      : ChannelLog(channel), path_(folder / "data.csv"), data_(path_) {}
+
+ protected:
+  std::string Name() const override { return path_.string(); }
+  fs::path path_;
+  CsvReader data_;
+};
+
+class ImuLog : public CsvLog {
+ public:
+  ImuLog(int channel, const fs::path& folder) : CsvLog(channel, folder) {
+    const fs::path increments = folder / "increments.csv";
+    if (fs::exists(increments)) increments_ = std::make_unique<CsvReader>(increments);
+  }
+
+ protected:
+  bool Read() override {
+    std::array<double, 6> v{};
+    std::int64_t stamp = 0;
+    if (!data_.Next(stamp, v)) return false;
+    ImuSample sample{ToStamp(stamp), {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, std::nullopt};
+    if (increments_) {
+      std::int64_t increment_stamp = 0;
+      if (!increments_->Next(increment_stamp, v) || increment_stamp != stamp) {
+        throw InputError("increments.csv and data.csv do not have the same stamps", "", Name());
+      }
+      sample.increments = ImuIncrements{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+    }
+    measurement_.value = sample;
+    return true;
+  }
+
+ private:
+  std::unique_ptr<CsvReader> increments_;
+};
+
+class MagLog : public CsvLog {
+ public:
+  using CsvLog::CsvLog;
+
+ protected:
+  bool Read() override {
+    std::array<double, 3> v{};
+    std::int64_t stamp = 0;
+    if (!data_.Next(stamp, v)) return false;
+    measurement_.value = MagSample{ToStamp(stamp), {v[0], v[1], v[2]}};
+    return true;
+  }
+};
+
+class PressureLog : public CsvLog {
+ public:
+  using CsvLog::CsvLog;
+
+ protected:
+  bool Read() override {
+    std::array<double, 1> v{};
+    std::int64_t stamp = 0;
+    if (!data_.Next(stamp, v)) return false;
+    measurement_.value = PressureSample{ToStamp(stamp), v[0]};
+    return true;
+  }
+};
+
+AudioDescription LoadDescription(const fs::path& folder) {
+  const fs::path path = folder / "sensor.yaml";
+  AudioDescription description;
+  YamlDocument::FromFile(path.string()).ReadSome([&](ParamVisitor& v) { description.Visit(v); });
+  return description;
+}
+
+class AudioLog : public ChannelLog {
+ public:
+  AudioLog(int channel, const fs::path& folder)
+      : ChannelLog(channel),
+        description_(LoadDescription(folder)),
+        path_(folder / description_.file),
+        reader_(path_),
+        counts_(static_cast<std::size_t>(description_.block_samples)) {}
+
+ protected:
+  std::string Name() const override { return path_.string(); }
+  bool Read() override {
+    if (reader_.Read(counts_) < counts_.size()) return false;
+    next_sample_ += description_.block_samples;
+    measurement_.value = AudioBlock{
+        ToStamp(description_.start_ns) + SampleOffset(next_sample_ - 1, Rate(description_.rate_Hz)),
+        description_.rate_Hz, description_.scale_Pa, counts_};
+    return true;
+  }
+
+ private:
+  AudioDescription description_;
+  fs::path path_;
+  acoustics::AudioReader reader_;
+  std::vector<std::int32_t> counts_;
+  std::int64_t next_sample_ = 0;
+};
+
+std::unique_ptr<ChannelLog> OpenLog(int channel, const RecordedChannel& recorded, const fs::path& folder) {
+  if (recorded.type == "imu") return std::make_unique<ImuLog>(channel, folder);
+  if (recorded.type == "magnetometer") return std::make_unique<MagLog>(channel, folder);
+  if (recorded.type == "pressure") return std::make_unique<PressureLog>(channel, folder);
+  return std::make_unique<AudioLog>(channel, folder);
+}
+
+}  // namespace
+
+struct MeasurementLog::Impl {
+  std::vector<std::unique_ptr<ChannelLog>> open;  // in channel order
+  ChannelLog* delivered = nullptr;
+
+  void Drop(const ChannelLog* log) {
+    std::erase_if(open, [log](const auto& entry) { return entry.get() == log; });
+  }
+};
+
+MeasurementLog::MeasurementLog(const fs::path& run_folder, const EstimatorInput& input)
+    : impl_(std::make_unique<Impl>()) {
+  for (std::size_t i = 0; i < input.channels.size(); ++i) {
+    auto log = OpenLog(static_cast<int>(i), input.channels[i], run_folder / "mav0" / input.channels[i].name);
+    if (log->Advance()) impl_->open.push_back(std::move(log));
+  }
+}
+
+MeasurementLog::~MeasurementLog() = default;
+
+const Measurement* MeasurementLog::Next() {
+  if (impl_->delivered && !impl_->delivered->Advance()) impl_->Drop(impl_->delivered);
+  impl_->delivered = nullptr;
+  for (const auto& log : impl_->open) {
+    if (!impl_->delivered || Stamp(log->current()) < Stamp(impl_->delivered->current()))
+      impl_->delivered = log.get();
+  }
+  return impl_->delivered ? &impl_->delivered->current() : nullptr;
+}
+
+}  // namespace piperun::scenarios

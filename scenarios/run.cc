@@ -1,0 +1,201 @@
+#include "scenarios/run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "base/check.h"
+#include "scenarios/assemble.h"
+#include "scenarios/estimator_bank.h"
+#include "scenarios/load.h"
+#include "scenarios/measurement_writer.h"
+#include "scenarios/output_file.h"
+#include "scenarios/run_folder.h"
+#include "scenarios/run_json.h"
+#include "scenarios/truth_log.h"
+#include "scenarios/truth_recorder.h"
+
+namespace piperun::scenarios {
+namespace {
+
+const char* Name(sim::MotionStatus status) {
+  switch (status) {
+    case sim::MotionStatus::kRunning:
+      return "time_limit";
+    case sim::MotionStatus::kArrived:
+      return "ok";
+    case sim::MotionStatus::kBallStuck:
+      return "ball_stuck";
+    case sim::MotionStatus::kLeftNetwork:
+      return "left_network";
+    case sim::MotionStatus::kNotFinite:
+      return "not_finite";
+  }
+  AbortWith("every status has a name", __FILE__, __LINE__);
+}
+
+/// How many steps of truth the channels look back and ahead.
+std::size_t WindowCapacity(const Assembly& assembly) {
+  Duration longest{0};
+  Duration ahead{0};
+  for (const auto& channel : assembly.channels) {
+    longest = std::max(longest, channel->history());
+    ahead = std::max(ahead, channel->lookahead());
+  }
+  return static_cast<std::size_t>(std::ceil(Seconds(longest + ahead) * assembly.motion->rate().Hz())) + 8;
+}
+
+std::vector<std::unique_ptr<MeasurementWriter>> OpenWriters(const Scenario& scenario,
+                                                            const Assembly& assembly,
+                                                            const RunFolder& folder) {
+  const RecordOptions options{assembly.clock.ToRobot(TrueTime{}), scenario.output.audio_format,
+                              scenario.mission.time_limit_s};
+  std::vector<std::unique_ptr<MeasurementWriter>> writers;
+  for (std::size_t i = 0; i < assembly.channels.size(); ++i) {
+    const std::string& name = assembly.channel_names[i];
+    const auto entry = std::find_if(scenario.sensors.begin(), scenario.sensors.end(),
+                                    [&](const SensorEntry& e) { return e.name == name; });
+    const auto* sensor = dynamic_cast<const SensorChannel*>(assembly.channels[i].get());
+    writers.push_back(MakeMeasurementWriter(*entry, sensor ? sensor->sensor().X_BS() : Pose{}, options,
+                                            folder.Folder("mav0/" + name)));
+  }
+  return writers;
+}
+
+const acoustics::HydrophoneParams* FindHydrophone(const Scenario& scenario) {
+  for (const SensorEntry& entry : scenario.sensors) {
+    if (const auto* params = dynamic_cast<const acoustics::HydrophoneParams*>(&entry.kind.params()))
+      return params;
+  }
+  return nullptr;
+}
+
+/// Truth to measurements to files and filters: the loop.
+class RunLoop {
+ public:
+  RunLoop(const Scenario& scenario, const RunOptions& options, Assembly& assembly, const RunFolder& folder)
+      : scenario_(scenario),
+        options_(options),
+        assembly_(assembly),
+        window_(assembly.motion->rate(), WindowCapacity(assembly)),
+        truth_(assembly, Rate(scenario.output.truth_rate_Hz.value_or(assembly.motion->rate().Hz())),
+               folder.Folder("truth"), folder.Folder("mav0/state_groundtruth_estimate0")),
+        writers_(OpenWriters(scenario, assembly, folder)),
+        input_(MakeEstimatorInput(scenario, assembly)),
+        bank_(input_, folder.staging() / "estimates", [this](RobotTime t) { return TruthAt(t); }),
+        truth_file_(folder.staging() / "truth" / "ball.csv") {
+    for (const auto& channel : assembly.channels) lookahead_ = std::max(lookahead_, channel->lookahead());
+    WriteTextFile(folder.staging() / "scenario.yaml", WriteScenario(scenario));
+    WriteTextFile(folder.staging() / "estimator_input.yaml",
+                  WriteYaml([this](ParamVisitor& v) { input_.Visit(v); }));
+  }
+
+  void Run() {
+    sim::Motion& motion = *assembly_.motion;
+    const TrueTime limit(FromSeconds(scenario_.mission.time_limit_s));
+    Push(motion.state());
+    while (motion.status() == sim::MotionStatus::kRunning && motion.state().time < limit) {
+      motion.Step();
+      Push(motion.state());
+    }
+  }
+
+  RunResult Finish() {
+    RunResult result;
+    result.status = Name(assembly_.motion->status());
+    result.duration_s = Seconds(assembly_.motion->state().time);
+    result.leaks = truth_.Close(FindHydrophone(scenario_));
+    for (const auto& writer : writers_) writer->Close();
+    result.estimators = bank_.Finish(result.leaks, scenario_.score.match_radius_m,
+                                     [this] { return OpenTruth(truth_file_, assembly_.clock); });
+    return result;
+  }
+
+ private:
+  void Push(const sim::TruthState& state) {
+    window_.Push(state);
+    truth_.Record(window_);
+    DeliverUntil(window_.latest_time() - lookahead_);
+    if (window_.last() % 1024 == 0) Report(state);
+  }
+
+  /// All measurements complete by `horizon`, by time and then channel name.
+  void DeliverUntil(TrueTime horizon) {
+    while (true) {
+      std::size_t first = assembly_.channels.size();
+      TrueTime due = horizon + Duration(1);
+      for (std::size_t i = 0; i < assembly_.channels.size(); ++i) {
+        if (assembly_.channels[i]->due() < due) {
+          first = i;
+          due = assembly_.channels[i]->due();
+        }
+      }
+      if (first == assembly_.channels.size()) return;
+      const Measurement& measurement = assembly_.channels[first]->Take(window_);
+      writers_[first]->Write(measurement);
+      bank_.Ingest(measurement);
+    }
+  }
+
+  std::optional<TrackTruth> TruthAt(RobotTime t) const {
+    const TrueTime instant = assembly_.clock.ToTrue(t);
+    if (instant > window_.latest_time() || instant < SampleTime(window_.first(), window_.rate()))
+      return std::nullopt;
+    const sim::TruthState state = sim::Interpolate(window_, instant);
+    return TrackTruth{state.X_WB.q, state.X_WB.p, state.chainage_m};
+  }
+
+  void Report(const sim::TruthState& state) const {
+    if (options_.stop && *options_.stop) throw Interrupted();
+    const double length_m = assembly_.route ? assembly_.route->length_m() : 0;
+    if (options_.progress) {
+      options_.progress(Seconds(state.time),
+                        length_m > 0 ? std::clamp(state.chainage_m / length_m, 0.0, 1.0) : 0);
+    }
+  }
+
+  const Scenario& scenario_;
+  const RunOptions& options_;
+  Assembly& assembly_;
+  sim::TruthWindow window_;
+  TruthRecorder truth_;
+  std::vector<std::unique_ptr<MeasurementWriter>> writers_;
+  EstimatorInput input_;
+  EstimatorBank bank_;
+  std::filesystem::path truth_file_;
+  Duration lookahead_{0};
+};
+
+void DescribeRoute(const Assembly& assembly, RunResult& result) {
+  if (!assembly.route) return;
+  result.route_length_m = assembly.route->length_m();
+  for (const RouteLeg& leg : assembly.route->legs()) {
+    result.route_pipes.push_back(assembly.network->pipe(leg.pipe).id);
+  }
+}
+
+}  // namespace
+
+RunResult Run(const Scenario& scenario, const RunOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  const std::unique_ptr<Assembly> assembly = Assemble(scenario);
+  RunFolder folder(options.out, options.force);
+  RunResult result;
+  {
+    RunLoop loop(scenario, options, *assembly, folder);
+    loop.Run();
+    result = loop.Finish();
+  }
+  result.scenario = scenario.name;
+  result.seed = scenario.seed;
+  result.run = scenario.run;
+  DescribeRoute(*assembly, result);
+  result.file_hashes = HashFiles(folder.staging());
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  result.json = WriteRunJson(result);
+  WriteTextFile(folder.staging() / "run.json", result.json);
+  folder.Commit();
+  return result;
+}
+
+}  // namespace piperun::scenarios

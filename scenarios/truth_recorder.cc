@@ -1,0 +1,124 @@
+#include "scenarios/truth_recorder.h"
+
+#include <cmath>
+
+#include "scenarios/csv_row.h"
+
+namespace piperun::scenarios {
+namespace {
+
+constexpr std::string_view kBallHeader =
+    "#timestamp [ns],pipe,s [m],chainage [m],p_WB_x [m],p_WB_y [m],p_WB_z [m],q_WB_w [],q_WB_x [],q_WB_y [],"
+    "q_WB_z [],v_WB_x [m s^-1],v_WB_y [m s^-1],v_WB_z [m s^-1],w_WB_B_x [rad s^-1],w_WB_B_y [rad s^-1],"
+    "w_WB_B_z [rad s^-1],f_WB_B_x [m s^-2],f_WB_B_y [m s^-2],f_WB_B_z [m s^-2],water_speed [m s^-1],contact "
+    "[]\n";
+constexpr std::string_view kGroundtruthHeader =
+    "#timestamp,p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z [],"
+    "v_RS_R_x [m s^-1],v_RS_R_y [m s^-1],v_RS_R_z [m s^-1],b_w_RS_S_x [rad s^-1],b_w_RS_S_y [rad s^-1],"
+    "b_w_RS_S_z [rad s^-1],b_a_RS_S_x [m s^-2],b_a_RS_S_y [m s^-2],b_a_RS_S_z [m s^-2]\n";
+constexpr std::string_view kLeaksHeader = "id,pipe,s_m,chainage_m,x_m,y_m,z_m,flow_m3_s,t_cpa_ns,snr_dB\n";
+
+std::int64_t Nanoseconds(TrueTime t) { return t.time_since_epoch().count(); }
+
+/// When the ball passes the leak, to the nanosecond: from the closest step on at the speed it had there. A
+/// ball that turned back or stopped short was closest at that step itself.
+std::int64_t RefineApproach_ns(const sim::TruthState& closest, double leak_chainage_m, double step_s) {
+  const double speed = closest.v_WB_W.norm();
+  const double ahead_m = leak_chainage_m - closest.chainage_m;
+  const bool passed = std::abs(ahead_m) < speed * step_s;
+  return Nanoseconds(closest.time) + (passed ? FromSeconds(ahead_m / speed).count() : 0);
+}
+
+void WriteLeak(OutputFile& file, const TrueLeak& leak) {
+  CsvRow row(file);
+  row << std::string_view(leak.id) << std::string_view(leak.pipe) << leak.s_m << leak.chainage_m << leak.p_W
+      << leak.flow_m3_s << leak.t_cpa_ns;
+  if (leak.snr_dB) {
+    row << *leak.snr_dB;
+  } else {
+    row << std::string_view("");
+  }
+}
+
+}  // namespace
+
+TruthRecorder::TruthRecorder(const Assembly& assembly, Rate truth_rate,
+                             const std::filesystem::path& truth_folder,
+                             const std::filesystem::path& groundtruth_folder)
+    : assembly_(assembly),
+      truth_rate_(truth_rate),
+      truth_folder_(truth_folder),
+      ball_(truth_folder / "ball.csv"),
+      groundtruth_(groundtruth_folder / "data.csv"),
+      approaches_(assembly.leaks.size()) {
+  ball_.Append(kBallHeader);
+  groundtruth_.Append(kGroundtruthHeader);
+}
+
+void TruthRecorder::Record(const sim::TruthWindow& window) {
+  for (;; ++next_row_) {
+    const TrueTime due = SampleTime(next_row_, truth_rate_);
+    if (due > window.latest_time()) break;
+    WriteRow(sim::Interpolate(window, due));
+  }
+  for (std::size_t i = 0; i < approaches_.size(); ++i) UpdateApproach(i, window);
+}
+
+void TruthRecorder::WriteRow(const sim::TruthState& state) {
+  static const std::string kNoPipe = "-";
+  const std::string& pipe = state.pipe < 0 ? kNoPipe : assembly_.network->pipe(state.pipe).id;
+  CsvRow(ball_) << Nanoseconds(state.time) << std::string_view(pipe) << state.s_m << state.chainage_m
+                << state.X_WB.p << state.X_WB.q << state.v_WB_W << state.w_WB_B << state.f_WB_B
+                << state.water_speed_m_s << static_cast<std::int64_t>(state.contact);
+  const Pose X_BS = assembly_.imu ? assembly_.imu->sensor().X_BS() : Pose{};
+  const auto bias = assembly_.imu ? assembly_.imu->sensor().bias() : std::nullopt;
+  const Pose X_WS = state.X_WB * X_BS;
+  const Vector3d v_WS_W = state.v_WB_W + state.X_WB.q * state.w_WB_B.cross(X_BS.p);
+  CsvRow(groundtruth_) << Nanoseconds(state.time) << X_WS.p << X_WS.q << v_WS_W
+                       << (bias ? bias->gyro_rad_s : Vector3d::Zero().eval())
+                       << (bias ? bias->accel_m_s2 : Vector3d::Zero().eval());
+}
+
+void TruthRecorder::UpdateApproach(std::size_t leak, const sim::TruthWindow& window) {
+  const sim::TruthState& state = window.at(window.last());
+  const double leak_chainage_m = assembly_.leaks[leak].chainage_m;
+  auto& closest = approaches_[leak];
+  if (closest &&
+      std::abs(state.chainage_m - leak_chainage_m) >= std::abs(closest->chainage_m - leak_chainage_m)) {
+    return;
+  }
+  closest = state;
+}
+
+std::vector<TrueLeak> TruthRecorder::Close(const acoustics::HydrophoneParams* hydrophone) {
+  ball_.Close();
+  groundtruth_.Close();
+  OutputFile file(truth_folder_ / "leaks.csv");
+  file.Append(kLeaksHeader);
+  std::vector<TrueLeak> leaks;
+  for (std::size_t i = 0; i < approaches_.size(); ++i) {
+    const PlacedLeak& placed = assembly_.leaks[i];
+    TrueLeak leak{placed.leak.id,
+                  assembly_.network->pipe(placed.leak.pipe).id,
+                  placed.leak.s_m,
+                  placed.chainage_m,
+                  placed.p_W,
+                  placed.state.flow_m3_s,
+                  0,
+                  std::nullopt};
+    if (approaches_[i]) {
+      const sim::TruthState& closest = *approaches_[i];
+      leak.t_cpa_ns = RefineApproach_ns(closest, placed.chainage_m, assembly_.motion->rate().Period_s());
+      if (hydrophone) {
+        leak.snr_dB = acoustics::CalcLeakSnr_dB(assembly_.scene, i, *hydrophone,
+                                                CalcListener(closest, &*assembly_.route), 1000, 4000);
+      }
+    }
+    WriteLeak(file, leak);
+    leaks.push_back(std::move(leak));
+  }
+  file.Close();
+  return leaks;
+}
+
+}  // namespace piperun::scenarios

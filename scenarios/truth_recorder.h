@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "scenarios/assemble.h"
+#include "scenarios/output_file.h"
+#include "scenarios/score.h"
+#include "sim/truth.h"
+
+namespace piperun::scenarios {
+
+/// Writes truth/ball.csv and EuRoC's state_groundtruth_estimate0, and watches for the closest approach to
+/// every leak.
+class TruthRecorder {
+ public:
+  TruthRecorder(const Assembly& assembly, Rate truth_rate, const std::filesystem::path& truth_folder,
+                const std::filesystem::path& groundtruth_folder);
+
+  /// Call after every push into the window.
+  void Record(const sim::TruthWindow& window);
+  /// Completes the files, writes leaks.csv and returns what it says.
+  std::vector<TrueLeak> Close(const acoustics::HydrophoneParams* hydrophone);
+
+ private:
+  void WriteRow(const sim::TruthState& state);
+  void UpdateApproach(std::size_t leak, const sim::TruthWindow& window);
+
+  const Assembly& assembly_;
+  Rate truth_rate_;
+  std::filesystem::path truth_folder_;
+  OutputFile ball_;
+  OutputFile groundtruth_;
+  std::int64_t next_row_ = 0;
+  std::vector<std::optional<sim::TruthState>> approaches_;  ///< closest step to each leak so far
+};
+
+}  // namespace piperun::scenarios
