@@ -1,0 +1,156 @@
+#include "sim/pipe_flow.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/check.h"
+
+namespace piperun::sim {
+namespace {
+
+constexpr double kLaminarRe = 2300;
+constexpr double kTurbulentRe = 4000;
+constexpr double kMinExponent = 3;
+constexpr double kMaxExponent = 14;
+
+double SolveColebrook(double reynolds, double relative_roughness) {
+  const double a = relative_roughness / 3.7, b = 2.51 / reynolds;
+  // Newton on g(x) = x + 2 log10(a + b x), x = 1/sqrt(f); g is increasing and concave, so it converges
+  double x = 7;
+  for (int i = 0; i < 50; ++i) {
+    const double dx = (x + 2 * std::log10(a + b * x)) / (1 + 2 * b / (std::numbers::ln10 * (a + b * x)));
+    x -= dx;
+    if (std::abs(dx) < 1e-15 * x) break;
+  }
+  return 1 / (x * x);
+}
+
+double PowerLaw(double exponent, double radius) {
+  const double peak = (exponent + 1) * (2 * exponent + 1) / (2 * exponent * exponent);
+  return peak * std::pow(std::max(0.0, 1 - radius), 1 / exponent);
+}
+
+/// Integral of f over [0, pi] by midpoints in t, phi = pi (t - sin(2 pi t)/(2 pi)): the substitution
+/// flattens both ends, where the integrands below have their power-law singularities.
+template <class F>
+double IntegrateHalfTurn(F f) {
+  using std::numbers::pi;
+  constexpr int kPoints = 96;
+  double sum = 0;
+  for (int i = 0; i < kPoints; ++i) {
+    const double t = (i + 0.5) / kPoints;
+    sum += f(pi * t - 0.5 * std::sin(2 * pi * t)) * (1 - std::cos(2 * pi * t));
+  }
+  return sum * pi / kPoints;
+}
+
+/// Integral of u over the circle of radius r around the axis: 2 pi int u rho drho in closed form.
+double IntegrateCore(double exponent, double r) {
+  const double q = 1 / exponent, y = 1 - r;
+  const double primitive_1 = (1 - std::pow(y, q + 1)) / (q + 1),
+               primitive_2 = (1 - std::pow(y, q + 2)) / (q + 2);
+  return 2 * std::numbers::pi * PowerLaw(exponent, 0) * (primitive_1 - primitive_2);
+}
+
+/// The disc is cut into arcs of constant distance from the axis. Those that close around it make up the core.
+double CalcDiscVelocity(double exponent, double lambda, double offset) {
+  const double inner = std::abs(offset - lambda), outer = offset + lambda;
+  const double mid = 0.5 * (outer + inner), half = 0.5 * (outer - inner);
+  const double arcs = half * IntegrateHalfTurn([&](double phi) {
+                        const double rho = mid + half * std::cos(phi);
+                        const double cosine =
+                            (rho * rho + offset * offset - lambda * lambda) / (2 * rho * offset);
+                        const double opening = 2 * std::acos(std::clamp(cosine, -1.0, 1.0));
+                        return PowerLaw(exponent, rho) * rho * opening * std::sin(phi);
+                      });
+  const double core = offset < lambda ? IntegrateCore(exponent, lambda - offset) : 0;
+  return (core + (offset > 0 ? arcs : 0)) / (std::numbers::pi * lambda * lambda);
+}
+
+/// Mean of grad u over the disc = integral of u n over its rim / area.
+double CalcDiscGradient(double exponent, double lambda, double offset) {
+  const double rim = IntegrateHalfTurn([&](double phi) {
+    const double c = std::cos(phi);
+    const double rho = std::sqrt(std::max(0.0, offset * offset + lambda * lambda + 2 * offset * lambda * c));
+    return PowerLaw(exponent, rho) * c;
+  });
+  return 2 * rim / (std::numbers::pi * lambda);
+}
+
+/// Cubic Lagrange weights at x in units of the nodes' spacing, for four neighbouring nodes of `count`.
+struct CubicWeights {
+  int first;
+  std::array<double, 4> w;
+};
+
+CubicWeights CalcCubicWeights(double x, int count) {
+  const int first = std::clamp(static_cast<int>(x) - 1, 0, count - 4);
+  const double a = x - first, b = a - 1, c = a - 2, d = a - 3;
+  return {first, {-b * c * d / 6, a * c * d / 2, -a * b * d / 2, a * b * c / 6}};
+}
+
+}  // namespace
+
+double CalcTurbulentFraction(double reynolds) {
+  const double x = std::clamp((reynolds - kLaminarRe) / (kTurbulentRe - kLaminarRe), 0.0, 1.0);
+  return x * x * (3 - 2 * x);
+}
+
+double CalcFrictionFactor(double reynolds, double relative_roughness) {
+  Demand(reynolds >= 0 && relative_roughness >= 0 && relative_roughness <= 0.05,
+         "friction is known for Re >= 0 and e/D in [0, 0.05]");
+  if (reynolds == 0) return 0;
+  const double turbulent = CalcTurbulentFraction(reynolds);
+  double f = (1 - turbulent) * 64 / reynolds;
+  if (turbulent > 0) f += turbulent * SolveColebrook(reynolds, relative_roughness);
+  return f;
+}
+
+VelocityProfile CalcVelocityProfile(double reynolds, double friction_factor) {
+  const double turbulent = CalcTurbulentFraction(reynolds);
+  if (turbulent == 0) return {.turbulent_fraction = 0};
+  return {1 / std::sqrt(friction_factor), turbulent};
+}
+
+DiscMeanTable::DiscMeanTable(double lambda) : lambda_(lambda), step_((1 - lambda) / (kOffsets - 1)) {
+  Demand(lambda > 0 && lambda <= 0.95, "d/D lies in (0, 0.95]");
+  for (int i = 0; i < kExponents; ++i) {
+    const double q = 1 / kMaxExponent + i * (1 / kMinExponent - 1 / kMaxExponent) / (kExponents - 1);
+    for (int j = 0; j < kOffsets; ++j) {
+      const double offset = j * step_;
+      nodes_[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = {
+          CalcDiscVelocity(1 / q, lambda, offset), CalcDiscGradient(1 / q, lambda, offset)};
+    }
+  }
+}
+
+DiscMean DiscMeanTable::EvalTurbulent(double exponent, double offset) const {
+  Demand(exponent >= kMinExponent && exponent <= kMaxExponent, "the profile's exponent lies in [3, 14]");
+  const double q = (1 / exponent - 1 / kMaxExponent) / (1 / kMinExponent - 1 / kMaxExponent);
+  const CubicWeights row = CalcCubicWeights(q * (kExponents - 1), kExponents);
+  const CubicWeights column = CalcCubicWeights(offset / step_, kOffsets);
+  DiscMean mean;
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) {
+      const DiscMean& node =
+          nodes_[static_cast<std::size_t>(row.first) + i][static_cast<std::size_t>(column.first) + j];
+      const double weight = row.w[i] * column.w[j];
+      mean.velocity += weight * node.velocity;
+      mean.gradient += weight * node.gradient;
+    }
+  }
+  return mean;
+}
+
+DiscMean DiscMeanTable::Eval(const VelocityProfile& profile, double offset) const {
+  const double turbulent = profile.turbulent_fraction;
+  DiscMean mean;
+  if (turbulent > 0) mean = EvalTurbulent(profile.exponent, offset);
+  const double laminar_velocity = 2 * (1 - offset * offset - 0.5 * lambda_ * lambda_);
+  const double laminar_gradient = -4 * offset;
+  return {turbulent * mean.velocity + (1 - turbulent) * laminar_velocity,
+          turbulent * mean.gradient + (1 - turbulent) * laminar_gradient};
+}
+
+}  // namespace piperun::sim
