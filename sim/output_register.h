@@ -1,0 +1,24 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/pose.h"
+
+namespace piperun::sim {
+
+/// What the register that a sensor's value is read from can hold: y = LSB round(clip(x, -range, range) /
+/// LSB). Range and resolution (LSB) in the unit of the value; a resolution of 0 means unrounded.
+struct OutputRegister {
+  double range = std::numeric_limits<double>::infinity();
+  double resolution = 0;
+
+  double Read(double value) const {
+    const double clipped = std::clamp(value, -range, range);
+    return resolution > 0 ? resolution * std::round(clipped / resolution) : clipped;
+  }
+  Vector3d Read(const Vector3d& value) const { return {Read(value.x()), Read(value.y()), Read(value.z())}; }
+};
+
+}  // namespace piperun::sim
