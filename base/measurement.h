@@ -12,36 +12,36 @@ namespace piperun {
 
 /// Increments over one IMU interval, for the mechanisation v += R dv + g dt; p += v dt; R = R Exp(dtheta).
 struct ImuIncrements {
-  Vector3d dtheta_S_rad;
-  Vector3d dv_S_m_s;
+  Vector3d dtheta_S_rad = Vector3d::Zero();
+  Vector3d dv_S_m_s = Vector3d::Zero();
 };
 
 /// Inertial sample, stamped at the end of its interval (t - 1/rate, t]; rates are means over the interval.
 struct ImuSample {
-  RobotTime stamp;
-  Vector3d w_WS_S_rad_s;  ///< angular rate of S in W, in S
-  Vector3d f_WS_S_m_s2;   ///< specific force (acceleration minus gravity), in S
-  std::optional<ImuIncrements> increments;
+  RobotTime stamp{};
+  Vector3d w_WS_S_rad_s = Vector3d::Zero();  ///< angular rate of S in W, in S
+  Vector3d f_WS_S_m_s2 = Vector3d::Zero();   ///< specific force (acceleration minus gravity), in S
+  std::optional<ImuIncrements> increments{};
 };
 
 /// Magnetic flux density at an instant.
 struct MagSample {
-  RobotTime stamp;
-  Vector3d m_S_T;
+  RobotTime stamp{};
+  Vector3d m_S_T = Vector3d::Zero();
 };
 
 /// Absolute-minus-atmospheric (gauge) pressure at an instant.
 struct PressureSample {
-  RobotTime stamp;
-  double pressure_Pa;
+  RobotTime stamp{};
+  double pressure_Pa = 0;
 };
 
 /// A run of hydrophone samples, stamped at the last one. The pressure is counts * scale_Pa.
 struct AudioBlock {
-  RobotTime stamp;
-  double rate_Hz;
-  double scale_Pa;  ///< pascals per count
-  std::span<const std::int32_t> counts;
+  RobotTime stamp{};
+  double rate_Hz = 0;
+  double scale_Pa = 0;  ///< pascals per count
+  std::span<const std::int32_t> counts{};
 };
 
 /// One measurement of one channel. `channel` indexes the run's channels in name order; an audio block's

@@ -42,7 +42,7 @@ THIRD_PARTIES = [
     ("RapidCheck", r"rapidcheck", r"tests/.*", False),
 ]
 TESTS_MAY_READ_BACK_WITH = {"libsndfile", "nlohmann-json", "yaml-cpp", "kissfft", "Bullet"}
-OPERATING_SYSTEM = re.compile(r"(unistd|fcntl|signal|dlfcn|errno|time)\.h$|(sys|linux)/")
+OPERATING_SYSTEM = re.compile(r"(unistd|fcntl|signal|dlfcn|errno|time|stdio|stdlib|string|termios)\.h$|(sys|linux)/")
 OPERATING_SYSTEM_USERS = r"(scenarios|tools|tests)/.*|acoustics/audio_file\.cc"
 PRIVATE_FOLDERS = {Path("sim/bullet"): "sim"}
 

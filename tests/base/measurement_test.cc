@@ -10,9 +10,9 @@ namespace {
 TEST(Measurement, HasTheStampOfWhateverItHolds) {
   const RobotTime t{Duration(123)};
   const std::vector<std::int32_t> counts{1, -1};
-  EXPECT_EQ(Stamp({0, ImuSample{t, {}, {}, {}}}), t);
-  EXPECT_EQ(Stamp({1, MagSample{t, {}}}), t);
-  EXPECT_EQ(Stamp({2, PressureSample{t, 1e5}}), t);
+  EXPECT_EQ(Stamp({0, ImuSample{.stamp = t}}), t);
+  EXPECT_EQ(Stamp({1, MagSample{.stamp = t}}), t);
+  EXPECT_EQ(Stamp({2, PressureSample{.stamp = t}}), t);
   EXPECT_EQ(Stamp({3, AudioBlock{t, 16000, 1e-4, counts}}), t);
 }
 
