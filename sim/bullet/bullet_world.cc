@@ -22,7 +22,9 @@ void RequireDoublePrecision() {
          "piperun is linked with Bullet in single precision; link bullet-float64");
 }
 
-btDefaultCollisionConstructionInfo SmallPools() {
+/// The first thing that is asked of Bullet.
+btDefaultCollisionConstructionInfo MakeConfiguration() {
+  RequireDoublePrecision();
   btDefaultCollisionConstructionInfo info;
   info.m_defaultMaxPersistentManifoldPoolSize = 4;
   info.m_defaultMaxCollisionAlgorithmPoolSize = 4;
@@ -41,7 +43,7 @@ btRigidBody::btRigidBodyConstructionInfo BodyInfo(const Sphere& sphere, btSphere
 BulletWorld::BulletWorld(const Route& route, const Sphere& sphere, const Vector3d& p_W, const Vector3d& v_W,
                          const Vector3d& w_W)
     : wall_(route),
-      configuration_(SmallPools()),
+      configuration_(MakeConfiguration()),
       dispatcher_(&configuration_),
       collision_(dispatcher_),
       broadphase_(4),
@@ -50,7 +52,6 @@ BulletWorld::BulletWorld(const Route& route, const Sphere& sphere, const Vector3
       sphere_shape_(sphere.radius_m),
       tube_shape_(wall_),
       ball_(BodyInfo(sphere, sphere_shape_)) {
-  RequireDoublePrecision();
   Configure(sphere);
   const Pose& X_FW = wall_.X_FW(piece_);
   ball_.setWorldTransform(btTransform(btQuaternion::getIdentity(), ToBullet(X_FW * p_W)));
@@ -77,6 +78,7 @@ void BulletWorld::Configure(const Sphere& sphere) {
 
   ball_.setActivationState(DISABLE_DEACTIVATION);
   ball_.setDamping(0, 0);
+  ball_.setFlags(0);  // no gyroscopic torque on a sphere
   ball_.setFriction(sphere.friction);
   world_.addRigidBody(&ball_);
   tube_.setCollisionShape(&tube_shape_);
