@@ -21,14 +21,15 @@ struct EstimatorStart {
   std::optional<RouteMap> map;
   double chainage_m = 0;
   double chainage_sd_m = 0.01;
-  Vector3d p_W = Vector3d::Zero();          ///< launch position of the ball's centre
-  std::optional<double> heading_rad;        ///< direction of travel, from x (east) towards y (north); nothing: unknown
+  Vector3d p_W = Vector3d::Zero();  ///< launch position of the ball's centre
+  std::optional<double>
+      heading_rad;  ///< direction of travel, from x (east) towards y (north); nothing: unknown
   double heading_sd_rad = 0.02;
   double ball_radius_m = 0.03;
   double ball_radius_sd_m = 0;
   double gravity_m_s2 = 9.80665;
-  Vector3d field_W_T = Vector3d::Zero();    ///< magnetic reference; zero: none
-  Pose X_BS;                                ///< mounting of the IMU as the designer drew it
+  Vector3d field_W_T = Vector3d::Zero();  ///< magnetic reference; zero: none
+  Pose X_BS;                              ///< mounting of the IMU as the designer drew it
 };
 
 /// Where the filter believes the ball to be, causal. Standard deviations are the filter's own.
@@ -42,7 +43,7 @@ struct NavState {
   double chainage_m = 0;
   double chainage_sd_m = 0;
   Matrix3d attitude_covariance_rad2 = Matrix3d::Zero();  ///< of the error rotation in W
-  std::optional<double> nis;         ///< normalised innovation squared of the last vector update
+  std::optional<double> nis;  ///< normalised innovation squared of the last vector update
   int nis_dof = 0;
 };
 

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "base/measurement.h"
+#include "base/params.h"
+#include "estimator/biquad.h"
+
+namespace piperun::estimator {
+
+struct BandParams {
+  double band_low_Hz = 1000;
+  double band_high_Hz = 4000;
+  double reference_low_Hz = 200;
+  double reference_high_Hz = 1000;
+  double frame_s = 0.05;
+
+  /// Throws InputError when a band's ends are in the wrong order.
+  void Check() const;
+  void Visit(ParamVisitor& v);
+};
+
+/// One short stretch of the hydrophone's record.
+struct BandFrame {
+  RobotTime time{};                ///< its middle
+  double power_Pa2 = 0;            ///< mean square in the band
+  double reference_power_Pa2 = 0;  ///< mean square in the reference band
+  double rectified_Pa = 0;         ///< mean absolute value in the band
+};
+
+/// Cuts audio into frames and measures two bands in each. Frames begin at multiples of their length, counted
+/// in samples from the first one, whatever the size of the blocks: the same samples give the same bits. A
+/// frame's time comes from the stamp of the block its last sample is in, less half a frame and less the group
+/// delay that fourth-order filters have in the middle of the band (below a millisecond; left out).
+/// Throws InputError (key "band_high_Hz") when a band reaches beyond half the sampling rate, and when the
+/// rate changes within the record.
+class BandFrames {
+ public:
+  explicit BandFrames(const BandParams& params) : params_(params) {}
+
+  /// Calls sink(frame) for each frame that ends in this block.
+  template <class Sink>
+  void Ingest(const AudioBlock& block, Sink&& sink) {
+    Prepare(block);
+    const std::int64_t last = static_cast<std::int64_t>(block.counts.size()) - 1;
+    for (std::int64_t i = 0; i <= last; ++i) {
+      Accumulate(block.scale_Pa * block.counts[static_cast<std::size_t>(i)]);
+      if (count_ == frame_samples_) sink(Cut(block.stamp, last - i));
+    }
+  }
+
+ private:
+  void Prepare(const AudioBlock& block);
+  void Accumulate(double pressure_Pa) {
+    const double in_band = band_.Step(pressure_Pa);
+    const double in_reference = reference_.Step(pressure_Pa);
+    power_ += in_band * in_band;
+    reference_power_ += in_reference * in_reference;
+    rectified_ += in_band < 0 ? -in_band : in_band;
+    ++count_;
+  }
+  BandFrame Cut(RobotTime block_stamp, std::int64_t samples_before_stamp);
+
+  BandParams params_;
+  double rate_Hz_ = 0;
+  std::int64_t frame_samples_ = 0;
+  BiquadCascade band_, reference_;
+  double power_ = 0, reference_power_ = 0, rectified_ = 0;
+  std::int64_t count_ = 0;
+};
+
+}  // namespace piperun::estimator

@@ -1,0 +1,48 @@
+#include "estimator/invert_track.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace piperun::estimator {
+namespace {
+
+constexpr double kVertical = 1e-3;  // sine of the angle to the vertical below which a pipe has no invert
+
+}  // namespace
+
+InvertPoint InvertTrack::Eval(double chainage_m) {
+  piece_ = route_.FindPiece(chainage_m, piece_);
+  const RoutePiece& piece = route_.pieces()[piece_];
+  const CentrelinePoint axis = EvalCentreline(piece.line, chainage_m);
+  const Vector3d up = Vector3d::UnitZ() - axis.tangent_W.z() * axis.tangent_W;
+  const double sine = up.norm();
+  if (sine > kVertical) normal_W_ = up / sine;
+  const double below_m = sine > kVertical ? piece.radius_m - ball_radius_m_ : 0;
+  return {axis.p_W - below_m * normal_W_, axis.tangent_W, normal_W_,
+          1 + below_m * axis.curvature_W.dot(normal_W_)};
+}
+
+double InvertTrack::Project(const Vector3d& p_W, double near_m, double reach_m) const {
+  double best_m = near_m;
+  double best_distance = std::numeric_limits<double>::infinity();
+  for (const RoutePiece& piece : route_.pieces()) {
+    if (piece.line.s_end_m() < near_m - reach_m || piece.line.s_begin_m > near_m + reach_m) continue;
+    const double s = std::clamp(FindNearest(piece.line, p_W), piece.line.s_begin_m, piece.line.s_end_m());
+    const double distance = (EvalCentreline(piece.line, s).p_W - p_W).squaredNorm();
+    if (distance < best_distance) {
+      best_distance = distance;
+      best_m = s;
+    }
+  }
+  return best_m;
+}
+
+bool InvertTrack::StraightAround(double chainage_m, double margin_m) {
+  piece_ = route_.FindPiece(chainage_m, piece_);
+  const auto straight = [this](double s) {
+    return route_.pieces()[route_.FindPiece(s, piece_)].line.straight();
+  };
+  return straight(chainage_m) && straight(chainage_m - margin_m) && straight(chainage_m + margin_m);
+}
+
+}  // namespace piperun::estimator

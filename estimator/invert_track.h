@@ -1,0 +1,36 @@
+#pragma once
+
+#include "estimator/estimator.h"
+
+namespace piperun::estimator {
+
+/// A ball lying on the invert of the mapped pipe at some chainage.
+struct InvertPoint {
+  Vector3d p_W;        ///< of the ball's centre
+  Vector3d tangent_W;  ///< direction of travel
+  Vector3d normal_W;   ///< from the contact to the ball's centre: up, made perpendicular to the tangent
+  double stretch = 1;  ///< path of the ball's centre per metre of centreline: 1 + d kappa . n
+};
+
+/// Where a ball of given radius runs along a route: a distance d = R - r below the axis. Keeps the map by
+/// reference; remembers the piece it was last asked about.
+class InvertTrack {
+ public:
+  InvertTrack(const RouteMap& map, double ball_radius_m) : route_(map.route), ball_radius_m_(ball_radius_m) {}
+
+  /// Beyond the route's ends its first and last piece go on. In a vertical pipe there is no invert: the
+  /// normal stays what it was and the ball is taken to the axis.
+  InvertPoint Eval(double chainage_m);
+  /// Chainage of the point of the route nearest to p, searched on the pieces within `reach_m` of `near_m`.
+  double Project(const Vector3d& p_W, double near_m, double reach_m) const;
+  /// True when the route is straight for `margin_m` on both sides.
+  bool StraightAround(double chainage_m, double margin_m);
+
+ private:
+  const Route& route_;
+  double ball_radius_m_;
+  std::size_t piece_ = 0;
+  Vector3d normal_W_ = Vector3d::UnitZ();
+};
+
+}  // namespace piperun::estimator

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "estimator/leak_locator.h"
+
+namespace piperun::estimator {
+
+/// Which leak locator listens beside a filter, and its parameters: a field for the parameters of filter
+/// kinds.
+class LocatorChoice {
+ public:
+  LocatorChoice() : LocatorChoice("matched_filter") {}
+  /// `kind` is the name of a locator kind, or "none".
+  explicit LocatorChoice(const std::string& kind);
+  LocatorChoice(const LocatorChoice& other);
+  LocatorChoice& operator=(const LocatorChoice& other);
+
+  /// The kind first, then its parameters.
+  void Visit(ParamVisitor& v);
+  /// Nothing for "none".
+  std::unique_ptr<LeakLocator> Make(const EstimatorStart& start) const;
+
+ private:
+  std::string kind_;
+  std::unique_ptr<Params> params_;
+};
+
+}  // namespace piperun::estimator

@@ -1,0 +1,237 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "estimator/frame_locator.h"
+#include "estimator/impact_gate.h"
+#include "estimator/pipe_loss.h"
+#include "estimator/roof_fit.h"
+
+namespace piperun::estimator::locators::matched_filter {
+namespace {
+
+constexpr double kWindow_dB = 12;  // a window reaches as far as the flattest roof falls by this
+constexpr double kBin_dB = 0.3;    // and a bin as far as the steepest one does
+constexpr double kApart_dB = 6;    // leaks closer together than this, on the flattest roof, are one
+constexpr double kMinZ = 3;        // below this a peak is not worth remembering
+constexpr double kMaxReach_m = 200;
+constexpr double kHampelLimit = 3.5, kHampelFloor_dB = 1.5;
+constexpr double kPriorLeaks_per_km = 1;
+
+struct MatchedFilterParams : ParamsOf<MatchedFilterParams> {
+  BandParams bands;
+  double reference_weight = 1;
+  std::optional<double> slope_dB_m;
+  double false_alarms_per_km = 0.1;
+  double min_height_dB = 1;
+
+  void Visit(ParamVisitor& v) override {
+    bands.Visit(v);
+    v.Number({"reference_weight",
+              "How much of the reference band's level is taken off the band's: 1 cancels a "
+              "background that drifts in both alike, 0 uses the band alone."},
+             Range::Between(0, 1), reference_weight);
+    v.NumberOr({"slope_dB_m",
+                "How steeply a leak's level falls along the pipe; automatic: from the map's wall, "
+                "or plastic's range of slopes without a map."},
+               Range::Positive(), "automatic", slope_dB_m);
+    v.Number({"false_alarms_per_km", "False alarms accepted per kilometre of quiet pipe."}, Range::Positive(),
+             false_alarms_per_km);
+    v.Number({"min_height_dB", "A leak must stand out of its background by this much."}, Range::NonNegative(),
+             min_height_dB);
+  }
+};
+
+/// Slopes to try. The level of a band falls less steeply than its middle frequency does, because the lower
+/// end carries further, and the reference band falls too: hence fractions of the nominal slope.
+std::vector<double> ChooseSlopes(const MatchedFilterParams& params, const EstimatorStart& start) {
+  std::optional<double> nominal_dB_m = params.slope_dB_m;
+  if (!nominal_dB_m && start.map) {
+    const Pipe& pipe = start.map->network.pipe(start.map->route.pieces().front().pipe);
+    nominal_dB_m =
+        CalcAttenuation_dB_m(pipe, std::sqrt(params.bands.band_low_Hz * params.bands.band_high_Hz));
+  }
+  if (!nominal_dB_m || !(*nominal_dB_m > 0)) return {1, 2, 4, 8};
+  return {0.35 * *nominal_dB_m, 0.6 * *nominal_dB_m, *nominal_dB_m};
+}
+
+/// A place where some roof fits better than anywhere near.
+struct Peak {
+  std::int64_t bin = 0;
+  double z = 0;
+  std::size_t roof = 0;
+};
+
+/// Matched filter along the pipe: at every place the best of a small bank of roofs is fitted to the level of
+/// the band over the reference band, together with a constant and a trend (which cancels a background that
+/// drifts linearly). The statistic is the fit's significance z, whose noise is estimated from its own
+/// residuals and their correlation. Local maxima of z above the threshold become leaks; each is then fitted
+/// again on a window that stops short of its neighbours, and its place refined between bins.
+class MatchedFilter final : public FrameLocator {
+ public:
+  MatchedFilter(const MatchedFilterParams& params, const EstimatorStart& start);
+
+ private:
+  void Consume(const LocatedFrame& frame) override;
+  void Complete() override;
+  void ScanUpTo(std::int64_t bin);
+  Peak Score(std::int64_t bin) const;
+  void ReportSettled(std::int64_t up_to_bin);
+  void Refine(const Peak& peak, double reach_m);
+  double Reduction(const BinRange& bins, double x0_m, std::size_t roof) const;
+  BinRange Window(std::int64_t bin, double reach_m) const;
+  double FalseAlarms_per_km(double z) const { return trials_per_km_ * CalcNormalTail(z); }
+
+  MatchedFilterParams params_;
+  std::vector<double> slopes_dB_m_;
+  double reach_m_;
+  std::int64_t reach_bins_;
+  std::int64_t apart_bins_;
+  double trials_per_km_;
+  std::vector<Roof> roofs_;
+  SoundProfile profile_;
+  ImpactGate<LocatedFrame> gate_{kHampelLimit, kHampelFloor_dB};
+  std::optional<std::int64_t> next_scan_;
+  std::vector<Peak> peaks_;  // of the last stretch, not yet reported, in order of bin
+  std::optional<std::int64_t> last_reported_;
+};
+
+double Reach_m(const std::vector<double>& slopes_dB_m) {
+  return std::min(kWindow_dB / slopes_dB_m.front(), kMaxReach_m);
+}
+
+MatchedFilter::MatchedFilter(const MatchedFilterParams& params, const EstimatorStart& start)
+    : FrameLocator(params.bands),
+      params_(params),
+      slopes_dB_m_(ChooseSlopes(params, start)),
+      reach_m_(Reach_m(slopes_dB_m_)),
+      profile_(kBin_dB / slopes_dB_m_.back(), 6 * reach_m_) {
+  reach_bins_ = static_cast<std::int64_t>(reach_m_ / profile_.bin_m());
+  apart_bins_ = std::max<std::int64_t>(
+      1, static_cast<std::int64_t>(kApart_dB / kWindow_dB * 0.5 * static_cast<double>(reach_bins_)));
+  for (const double slope : slopes_dB_m_) {
+    for (const double height_dB : {3.0, 20.0}) roofs_.emplace_back(slope, height_dB, 2 * reach_m_);
+  }
+  // places a decibel's fall apart are told apart by the steepest roof
+  trials_per_km_ = 1000 * slopes_dB_m_.back() / 4.34 * static_cast<double>(roofs_.size());
+  peaks_.reserve(64);
+}
+
+void MatchedFilter::Consume(const LocatedFrame& frame) {
+  const double level_dB = 10 * (std::log10(frame.sound.power_Pa2) -
+                                params_.reference_weight * std::log10(frame.sound.reference_power_Pa2));
+  LocatedFrame levelled = frame;
+  levelled.sound.power_Pa2 = level_dB;
+  const auto passed = gate_.Step(levelled, level_dB);
+  if (!passed) return;
+  profile_.Add(passed->ball, passed->sound.power_Pa2);
+  ScanUpTo(profile_.last() - reach_bins_ - 1);
+  ReportSettled(profile_.last() - 3 * reach_bins_);
+}
+
+void MatchedFilter::Complete() {
+  if (profile_.empty()) return;
+  ScanUpTo(profile_.last());
+  ReportSettled(profile_.last());
+}
+
+BinRange MatchedFilter::Window(std::int64_t bin, double reach_m) const {
+  const auto reach = static_cast<std::int64_t>(reach_m / profile_.bin_m());
+  return {&profile_, std::max(profile_.first(), bin - reach), std::min(profile_.last(), bin + reach)};
+}
+
+double MatchedFilter::Reduction(const BinRange& bins, double x0_m, std::size_t roof) const {
+  return FitRoof(bins, x0_m, roofs_[roof]).reduction_dB2;
+}
+
+Peak MatchedFilter::Score(std::int64_t bin) const {
+  const double x0_m = profile_.Centre_m(bin);
+  const BinRange bins = Window(bin, reach_m_);
+  Peak peak{bin, 0, 0};
+  // a roof needs both its sides
+  if (bin - bins.first < apart_bins_ || bins.last - bin < apart_bins_) return peak;
+  double best = 0;
+  for (std::size_t i = 0; i < roofs_.size(); ++i) {
+    const double reduction = Reduction(bins, x0_m, i);
+    if (reduction > best) {
+      best = reduction;
+      peak.roof = i;
+    }
+  }
+  const RoofFit fit = FitRoof(bins, x0_m, roofs_[peak.roof]);
+  if (fit.amplitude * roofs_[peak.roof].Level_dB(0) < params_.min_height_dB) return peak;
+  peak.z = CalcQuality(bins, x0_m, roofs_[peak.roof], fit).z;
+  return peak;
+}
+
+void MatchedFilter::ScanUpTo(std::int64_t bin) {
+  if (!next_scan_) next_scan_ = profile_.first();
+  for (; *next_scan_ <= bin; ++*next_scan_) {
+    const Peak here = Score(*next_scan_);
+    if (here.z < kMinZ) continue;
+    // among peaks too close together the most significant stays
+    if (!peaks_.empty() && here.bin - peaks_.back().bin <= apart_bins_) {
+      if (here.z > peaks_.back().z) peaks_.back() = here;
+    } else {
+      peaks_.push_back(here);
+    }
+  }
+}
+
+void MatchedFilter::ReportSettled(std::int64_t up_to_bin) {
+  while (!peaks_.empty() && peaks_.front().bin <= up_to_bin) {
+    const Peak peak = peaks_.front();
+    double reach_m = reach_m_;
+    const auto stop_short_of = [&](std::int64_t neighbour) {
+      const auto distance = static_cast<double>(std::abs(neighbour - peak.bin));
+      reach_m = std::min(reach_m, 0.45 * distance * profile_.bin_m());
+    };
+    if (last_reported_) stop_short_of(*last_reported_);
+    if (peaks_.size() > 1) stop_short_of(peaks_[1].bin);
+    if (FalseAlarms_per_km(peak.z) <= params_.false_alarms_per_km) {
+      Refine(peak, reach_m);
+      last_reported_ = peak.bin;
+    }
+    peaks_.erase(peaks_.begin());
+  }
+}
+
+void MatchedFilter::Refine(const Peak& peak, double reach_m) {
+  const BinRange bins = Window(peak.bin, reach_m);
+  const double h_m = 0.5 * profile_.bin_m() * static_cast<double>(apart_bins_) / 2;
+  double x_m = profile_.Centre_m(peak.bin);
+  double curvature = 0;
+  for (int iteration = 0; iteration < 3; ++iteration) {
+    const double before = Reduction(bins, x_m - h_m, peak.roof), here = Reduction(bins, x_m, peak.roof),
+                 after = Reduction(bins, x_m + h_m, peak.roof);
+    curvature = (2 * here - before - after) / (h_m * h_m);
+    if (!(curvature > 0)) return;
+    x_m += std::clamp(0.5 * (after - before) / (curvature * h_m), -h_m, h_m);
+  }
+  const RoofFit fit = FitRoof(bins, x_m, roofs_[peak.roof]);
+  const double variance = CalcQuality(bins, x_m, roofs_[peak.roof], fit).variance_dB2;
+  const TrackPoint place = profile_.Interpolate(x_m);
+  LeakEstimate leak;
+  leak.t_cpa = place.time;
+  leak.chainage_m = x_m;
+  leak.sigma_m = std::sqrt(2 * variance / curvature + place.chainage_sd_m * place.chainage_sd_m);
+  leak.p_W = place.p_W;
+  leak.confidence = kPriorLeaks_per_km / (kPriorLeaks_per_km + FalseAlarms_per_km(peak.z));
+  Report(leak);
+}
+
+std::unique_ptr<LeakLocator> Make(const Params& params, const EstimatorStart& start) {
+  return std::make_unique<MatchedFilter>(dynamic_cast<const MatchedFilterParams&>(params), start);
+}
+
+}  // namespace
+
+LocatorKind Kind() {
+  return {
+      "matched_filter",
+      "Fits the two-sided exponential of a leak's sound along the pipe to a ratio of bands; rejects impacts.",
+      MakeParams<MatchedFilterParams>, Make};
+}
+
+}  // namespace piperun::estimator::locators::matched_filter
