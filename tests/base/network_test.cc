@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <ostream>
 #include <string>
 
 #include "base/check.h"
@@ -70,6 +71,8 @@ struct BadPlan {
   const char* key;
   const char* words;
 };
+
+void PrintTo(const BadPlan& plan, std::ostream* out) { *out << plan.name; }
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
