@@ -22,13 +22,13 @@ FlowNoiseTable::FlowNoiseTable(const WaterProperties& water, double face_radius_
   for (Row& row : rows_) row.psd.resize(gain_.size());
 }
 
-void FlowNoiseTable::AddTo(std::span<double> psd, double speed_m_s, double bore_radius_m) {
+void FlowNoiseTable::AddTo(std::span<float> psd, double speed_m_s, double bore_radius_m) {
   if (speed_m_s <= 0) return;
   const auto below = static_cast<std::int64_t>(std::floor(std::log(speed_m_s) / kLogStep));
   const Row& slow = FindRow(below, bore_radius_m);
   const Row& fast = FindRow(below + 1, bore_radius_m);
   const double low_m_s = RowSpeed_m_s(below), high_m_s = RowSpeed_m_s(below + 1);
-  const double weight = (speed_m_s - low_m_s) / (high_m_s - low_m_s);
+  const auto weight = static_cast<float>((speed_m_s - low_m_s) / (high_m_s - low_m_s));
   for (std::size_t k = 0; k < psd.size(); ++k) {
     psd[k] += slow.psd[k] + weight * (fast.psd[k] - slow.psd[k]);
   }
@@ -48,7 +48,8 @@ void FlowNoiseTable::Fill(Row& row) const {
   const WallFlow flow = CalcWallFlow(RowSpeed_m_s(row.index), row.bore_radius_m, water_);
   for (std::size_t k = 0; k < row.psd.size(); ++k) {
     const double f_Hz = static_cast<double>(k) * bin_width_Hz_;
-    row.psd[k] = gain_[k] * CalcWallPressurePsd(flow, f_Hz) * CalcFaceAveraging(flow, face_radius_m_, f_Hz);
+    row.psd[k] = static_cast<float>(gain_[k] * CalcWallPressurePsd(flow, f_Hz) *
+                                    CalcFaceAveraging(flow, face_radius_m_, f_Hz));
   }
 }
 

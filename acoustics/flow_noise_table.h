@@ -20,13 +20,13 @@ class FlowNoiseTable {
                  std::vector<double> gain);
 
   /// Adds the spectrum at an eddy speed >= 0 to `psd` (Pa^2/Hz).
-  void AddTo(std::span<double> psd, double speed_m_s, double bore_radius_m);
+  void AddTo(std::span<float> psd, double speed_m_s, double bore_radius_m);
 
  private:
   struct Row {
     std::int64_t index = 0;
     double bore_radius_m = 0;  // 0: never filled
-    std::vector<double> psd;
+    std::vector<float> psd;
   };
 
   const Row& FindRow(std::int64_t index, double bore_radius_m);

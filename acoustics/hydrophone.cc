@@ -21,6 +21,12 @@ std::size_t CalcFrameSize(double rate_Hz) {
   return std::size_t{1} << std::lround(std::log2(kFrame_s * rate_Hz));
 }
 
+/// Nearest whole number, halves to even; |x| < 2^51. Unlike std::nearbyint it needs no library call.
+double RoundToEven(double x) {
+  constexpr double kRounder = 0x1.8p52;
+  return (x + kRounder) - kRounder;
+}
+
 void RequireRange(double value, const Range& range, const char* key) {
   if (std::isfinite(value) && range.Contains(value)) return;
   throw InputError(FormatNumber(value) + " is not allowed; the range is " + range.Text(), key);
@@ -45,7 +51,7 @@ class Hydrophone::Impl {
   Impl(const HydrophoneParams& params, const AcousticScene& scene, const RandomStream& random)
       : rate_(Checked(params).rate_Hz),
         counts_per_Pa_(1 / params.scale_Pa()),
-        largest_code_((std::int64_t{1} << (params.bits - 1)) - 1),
+        largest_code_(static_cast<double>(params.largest_code())),
         frames_(CalcFrameSize(params.rate_Hz), params.rate_Hz, random),
         spectrum_(scene, params, frames_.bin_width_Hz(), frames_.bins()),
         psd_(frames_.bins()) {}
@@ -59,7 +65,7 @@ class Hydrophone::Impl {
     while (!counts.empty()) {
       if (ready_.empty()) ready_ = AdvanceFrame(listener);
       const std::size_t n = std::min(counts.size(), ready_.size());
-      for (std::size_t i = 0; i < n; ++i) counts[i] = Quantise(ready_[i]);
+      Quantise(ready_.first(n), counts.first(n));
       counts = counts.subspan(n);
       ready_ = ready_.subspan(n);
     }
@@ -71,20 +77,20 @@ class Hydrophone::Impl {
     return frames_.Advance(next_frame_++, psd_);
   }
 
-  std::int32_t Quantise(float pressure_Pa) {
-    const auto code =
-        static_cast<std::int64_t>(std::llrint(counts_per_Pa_ * static_cast<double>(pressure_Pa)));
-    if (std::abs(code) <= largest_code_) return static_cast<std::int32_t>(code);
-    ++clipped_samples_;
-    return static_cast<std::int32_t>(code > 0 ? largest_code_ : -largest_code_);
+  void Quantise(std::span<const float> pressure_Pa, std::span<std::int32_t> counts) {
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      const double code = RoundToEven(counts_per_Pa_ * static_cast<double>(pressure_Pa[i]));
+      clipped_samples_ += std::abs(code) > largest_code_;
+      counts[i] = static_cast<std::int32_t>(std::clamp(code, -largest_code_, largest_code_));
+    }
   }
 
   Rate rate_;
   double counts_per_Pa_;
-  std::int64_t largest_code_;
+  double largest_code_;
   GaussianFrames frames_;
   ListenerSpectrum spectrum_;
-  std::vector<double> psd_;
+  std::vector<float> psd_;
   std::int64_t next_frame_ = 0;
   std::span<const float> ready_;  // completed samples not yet handed out
   std::int64_t clipped_samples_ = 0;

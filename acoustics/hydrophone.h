@@ -22,8 +22,9 @@ struct HydrophoneParams : ParamsOf<HydrophoneParams> {
   double high_pass_Hz = 10;               ///< -3 dB corner of the first-order input stage
   double face_radius_m = 0.005;           ///< of the sensitive face
 
-  /// Pascals per count: full_scale_Pa / (2^(bits-1) - 1). The largest codes are +-(2^(bits-1) - 1), so that a
-  /// count of 16 or 24 bits sits in the low bits of an int32 and pressure = counts * scale_Pa().
+  /// 2^(bits-1) - 1. Codes run from minus to plus this, in the low bits of an int32.
+  std::int64_t largest_code() const;
+  /// Pascals per count: full_scale_Pa / largest_code(); pressure = counts * scale_Pa().
   double scale_Pa() const;
   void Visit(ParamVisitor& v) override;
 };
@@ -48,7 +49,7 @@ double CalcConverterNoisePsd(const HydrophoneParams& params);
 /// silent. Correlations longer than a frame (echoes, tones) cannot be made this way.
 ///
 /// Random numbers are keyed by (stream, frame, bin): the samples do not depend on the size of the blocks. Of
-/// the stream, slots 0 to frame/8 are used. Rendering does not allocate.
+/// the stream, samples are frames and slots 0 to N/8 bins. Rendering does not allocate.
 class Hydrophone {
  public:
   using ListenerAt = std::function<ListenerState(TrueTime)>;

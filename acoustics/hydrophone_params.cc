@@ -5,10 +5,9 @@
 
 namespace piperun::acoustics {
 
-double HydrophoneParams::scale_Pa() const {
-  const auto largest_code = (std::int64_t{1} << (bits - 1)) - 1;
-  return full_scale_Pa / static_cast<double>(largest_code);
-}
+std::int64_t HydrophoneParams::largest_code() const { return (std::int64_t{1} << (bits - 1)) - 1; }
+
+double HydrophoneParams::scale_Pa() const { return full_scale_Pa / static_cast<double>(largest_code()); }
 
 void HydrophoneParams::Visit(ParamVisitor& v) {
   v.Number({.name = "rate_Hz", .doc = "sampling rate"}, Range::Between(1000, 384000), rate_Hz);

@@ -1,8 +1,8 @@
 #include "acoustics/listener_spectrum.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "acoustics/decay.h"
 #include "acoustics/flow_noise.h"
 #include "acoustics/propagation.h"
 #include "base/check.h"
@@ -10,7 +10,7 @@
 namespace piperun::acoustics {
 namespace {
 
-constexpr double kInaudibleLoss = 46;  // exp(-46) = -200 dB
+constexpr float kInaudibleLoss = 46;  // exp(-46) = -200 dB
 
 std::vector<double> TabulateHighPass(const HydrophoneParams& params, double bin_width_Hz, std::size_t bins) {
   std::vector<double> gain(bins, 0);
@@ -20,12 +20,13 @@ std::vector<double> TabulateHighPass(const HydrophoneParams& params, double bin_
   return gain;
 }
 
-std::vector<double> TabulateSteady(const AcousticScene& scene, const HydrophoneParams& params,
-                                   const std::vector<double>& high_pass, double bin_width_Hz) {
-  std::vector<double> psd(high_pass.size(), 0);
+std::vector<float> TabulateSteady(const AcousticScene& scene, const HydrophoneParams& params,
+                                  const std::vector<double>& high_pass, double bin_width_Hz) {
+  std::vector<float> psd(high_pass.size(), 0);
   for (std::size_t k = 1; k < psd.size(); ++k) {
     const double f_Hz = static_cast<double>(k) * bin_width_Hz;
-    psd[k] = high_pass[k] * CalcDistantNoisePsd(scene.ambient, f_Hz) + CalcSelfNoisePsd(params, f_Hz);
+    psd[k] = static_cast<float>(high_pass[k] * CalcDistantNoisePsd(scene.ambient, f_Hz) +
+                                CalcSelfNoisePsd(params, f_Hz));
   }
   return psd;
 }
@@ -55,9 +56,9 @@ void ListenerSpectrum::TabulateLosses(const AcousticScene& scene, double bin_wid
   }
   path_m_.resize(waves.size());
   for (const PipeWave& wave : waves) {
-    std::vector<double>& row = power_loss_1_m_.emplace_back(bins());
+    std::vector<float>& row = power_loss_1_m_.emplace_back(bins());
     for (std::size_t k = 0; k < row.size(); ++k) {
-      row[k] = 2 * wave.Attenuation_Np_m(static_cast<double>(k) * bin_width_Hz);
+      row[k] = static_cast<float>(2 * wave.Attenuation_Np_m(static_cast<double>(k) * bin_width_Hz));
     }
   }
 }
@@ -65,14 +66,15 @@ void ListenerSpectrum::TabulateLosses(const AcousticScene& scene, double bin_wid
 void ListenerSpectrum::TabulateLeaks(const AcousticScene& scene, const std::vector<double>& high_pass,
                                      double bin_width_Hz) {
   for (const SoundingLeak& leak : scene.leaks) {
-    LeakRow& row = leaks_.emplace_back(leak.chainage_m, std::vector<double>(bins()));
+    LeakRow& row = leaks_.emplace_back(leak.chainage_m, std::vector<float>(bins()));
     for (std::size_t k = 0; k < bins(); ++k) {
-      row.psd[k] = high_pass[k] * CalcLeakPsdAtHole(scene, leak, static_cast<double>(k) * bin_width_Hz);
+      const double f_Hz = static_cast<double>(k) * bin_width_Hz;
+      row.psd[k] = static_cast<float>(high_pass[k] * CalcLeakPsdAtHole(scene, leak, f_Hz));
     }
   }
 }
 
-void ListenerSpectrum::Calc(const ListenerState& listener, std::span<double> psd) {
+void ListenerSpectrum::Calc(const ListenerState& listener, std::span<float> psd) {
   std::copy(steady_.begin(), steady_.end(), psd.begin());
   if (flow_noise_) {
     flow_noise_table_.AddTo(psd, CalcEddySpeed(listener.slip_speed_m_s, listener.water_speed_m_s),
@@ -81,12 +83,12 @@ void ListenerSpectrum::Calc(const ListenerState& listener, std::span<double> psd
   for (const LeakRow& leak : leaks_) AddLeak(leak, listener.chainage_m, psd);
 }
 
-void ListenerSpectrum::AddLeak(const LeakRow& leak, double chainage_m, std::span<double> psd) {
+void ListenerSpectrum::AddLeak(const LeakRow& leak, double chainage_m, std::span<float> psd) {
   CalcPowerLoss(leak.chainage_m, chainage_m);
   // losses grow with frequency: the first inaudible bin ends the row
-  for (std::size_t k = 1; k < psd.size() && power_loss_[k] < kInaudibleLoss; ++k) {
-    psd[k] += leak.psd[k] * std::exp(-power_loss_[k]);
-  }
+  const auto silent = std::lower_bound(power_loss_.begin(), power_loss_.end(), kInaudibleLoss);
+  const auto audible = static_cast<std::size_t>(silent - power_loss_.begin());
+  for (std::size_t k = 0; k < audible; ++k) psd[k] += leak.psd[k] * CalcDecay(power_loss_[k]);
 }
 
 /// power_loss_ = integral of 2 alpha ds between two chainages, per bin.
@@ -95,9 +97,10 @@ void ListenerSpectrum::CalcPowerLoss(double from_m, double to_m) {
   for (std::size_t i = 0; i < legs_.size(); ++i) {
     path_m_[wave_of_leg_[i]] += CalcPathInLeg(legs_, i, from_m, to_m);
   }
-  std::fill(power_loss_.begin(), power_loss_.end(), 0);
+  std::fill(power_loss_.begin(), power_loss_.end(), 0.F);
   for (std::size_t w = 0; w < path_m_.size(); ++w) {
-    for (std::size_t k = 0; k < power_loss_.size(); ++k) power_loss_[k] += path_m_[w] * power_loss_1_m_[w][k];
+    const auto path_m = static_cast<float>(path_m_[w]);
+    for (std::size_t k = 0; k < power_loss_.size(); ++k) power_loss_[k] += path_m * power_loss_1_m_[w][k];
   }
 }
 

@@ -20,27 +20,27 @@ class ListenerSpectrum {
                    std::size_t bins);
 
   /// One-sided PSD per bin into `psd` (Pa^2/Hz, `bins` values); bin 0 is silent. Does not allocate.
-  void Calc(const ListenerState& listener, std::span<double> psd);
+  void Calc(const ListenerState& listener, std::span<float> psd);
 
  private:
   struct LeakRow {
     double chainage_m;
-    std::vector<double> psd;  // at the hole, behind the input stage
+    std::vector<float> psd;  // at the hole, behind the input stage
   };
 
   std::size_t bins() const { return steady_.size(); }
   void TabulateLosses(const AcousticScene& scene, double bin_width_Hz);
   void TabulateLeaks(const AcousticScene& scene, const std::vector<double>& high_pass, double bin_width_Hz);
   void CalcPowerLoss(double from_m, double to_m);
-  void AddLeak(const LeakRow& leak, double chainage_m, std::span<double> psd);
+  void AddLeak(const LeakRow& leak, double chainage_m, std::span<float> psd);
 
   std::vector<AcousticLeg> legs_;
-  std::vector<std::size_t> wave_of_leg_;             // legs of the same pipe share a row of losses
-  std::vector<std::vector<double>> power_loss_1_m_;  // per wave and bin: 2 alpha
-  std::vector<double> path_m_;                       // scratch, per wave
-  std::vector<double> power_loss_;                   // scratch, per bin
+  std::vector<std::size_t> wave_of_leg_;            // legs of the same pipe share a row of losses
+  std::vector<std::vector<float>> power_loss_1_m_;  // per wave and bin: 2 alpha
+  std::vector<double> path_m_;                      // scratch, per wave
+  std::vector<float> power_loss_;                   // scratch, per bin
   std::vector<LeakRow> leaks_;
-  std::vector<double> steady_;
+  std::vector<float> steady_;
   bool flow_noise_;
   FlowNoiseTable flow_noise_table_;
 };

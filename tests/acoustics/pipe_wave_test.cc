@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "base/check.h"
-#include "tests/acoustics/materials.h"
+#include "tests/acoustics/scenes.h"
 
 namespace piperun::acoustics {
 namespace {

@@ -1,0 +1,41 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "tests/acoustics/scenes.h"
+
+namespace {
+std::atomic<std::int64_t> allocations{0};
+}  // namespace
+
+void* operator new(std::size_t bytes) {
+  ++allocations;
+  if (void* memory = std::malloc(bytes)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace piperun::acoustics {
+namespace {
+
+TEST(Hydrophone, RenderingDoesNotAllocate) {
+  AcousticScene scene = MakeQuietScene(MakePvcWave());
+  scene.ambient = {};
+  AddLeak(scene, 10, MakeJet(1e-5, 1e-3));
+  Hydrophone hydrophone({}, scene, RandomStream(1, "hydrophone0", 0));
+  // slip speeds over two decades, so that flow noise is tabulated anew again and again
+  const Hydrophone::ListenerAt listener = [](TrueTime t) {
+    return ListenerState{Seconds(t), 0.5, 0.005 * std::exp(4.6 * std::abs(std::sin(Seconds(t)))),
+                         kPvcBore_m / 2};
+  };
+  std::vector<std::int32_t> block(1600);
+  const std::int64_t before = allocations;
+  for (int i = 0; i < 100; ++i) hydrophone.Render(listener, block);
+  EXPECT_EQ(allocations - before, 0);
+}
+
+}  // namespace
+}  // namespace piperun::acoustics
