@@ -1,6 +1,7 @@
 #include "sim/cubic_spline.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "base/check.h"
 
@@ -59,10 +60,9 @@ CubicSpline::CubicSpline(const std::vector<double>& times_s, const std::vector<V
     }
     std::size_t end = i + 1;
     while (end < last && points[end] != points[end + 1]) ++end;
-    Stretch stretch;
-    stretch.t.assign(times_s.begin() + static_cast<long>(i), times_s.begin() + static_cast<long>(end) + 1);
-    stretch.x.assign(points.begin() + static_cast<long>(i), points.begin() + static_cast<long>(end) + 1);
-    AppendStretch(stretch);
+    const auto first = static_cast<std::ptrdiff_t>(i), past = static_cast<std::ptrdiff_t>(end) + 1;
+    AppendStretch({times_s.begin() + first, times_s.begin() + past},
+                  {points.begin() + first, points.begin() + past});
     i = end;
   }
   AppendRest(times_s[last], points[last]);
@@ -73,9 +73,8 @@ void CubicSpline::AppendRest(double begin_s, const Vector3d& x) {
   pieces_.push_back({x, Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()});
 }
 
-void CubicSpline::AppendStretch(const Stretch& stretch) {
-  std::vector<double> t = stretch.t;
-  std::vector<Vector3d> c = stretch.x;
+/// Knots of one moving stretch. A free knot stands in `c` with its outer neighbour's point, see above.
+void CubicSpline::AppendStretch(std::vector<double> t, std::vector<Vector3d> c) {
   const double part = t.size() == 2 ? 1.0 / 3 : 0.5;
   const double first_free = t[0] + part * (t[1] - t[0]);
   const double last_free = t.back() - part * (t.back() - t[t.size() - 2]);

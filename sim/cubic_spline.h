@@ -35,13 +35,9 @@ class CubicSpline {
   struct Piece {  // x + v T + a T^2/2 + j T^3/6
     Vector3d x, v, a, j;
   };
-  struct Stretch {  // knots of one moving stretch; x of a free knot is its neighbour's outside
-    std::vector<double> t;
-    std::vector<Vector3d> x;
-  };
 
   void AppendRest(double begin_s, const Vector3d& x);
-  void AppendStretch(const Stretch& stretch);
+  void AppendStretch(std::vector<double> times_s, std::vector<Vector3d> points);
 
   std::vector<double> knots_s_;
   std::vector<Piece> pieces_;  // piece i begins at knots_s_[i]; the last is at rest

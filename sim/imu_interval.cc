@@ -55,7 +55,8 @@ ImuInterval CalcImuInterval(const TruthWindow& window, TrueTime begin, TrueTime 
   const double dt = window.rate().Period_s();
   double steps = 0;
   Vector3d dtheta = Vector3d::Zero(), f = Vector3d::Zero(), dv = Vector3d::Zero();
-  for (std::int64_t n = window.StepAt(begin) + 1; SampleTime(n - 1, window.rate()) < end; ++n) {
+  bool done = false;
+  for (std::int64_t n = window.StepAt(begin) + 1; !done; ++n) {
     const TruthState& a = window.at(n - 1);
     const TruthState& b = window.at(n);
     const double step_s = Seconds(b.time - a.time);
@@ -66,6 +67,7 @@ ImuInterval CalcImuInterval(const TruthWindow& window, TrueTime begin, TrueTime 
     dtheta += part * b.dtheta_B_rad;
     f += IntegrateCentre(a, b, from, to) + part * CalcLeverAcceleration(a, b, p_BP, dt);
     dv += part * CalcVelocityIncrement(a, b, p_BP, gravity_W, dt, n == 1);
+    done = b.time >= end;
   }
   return {steps * dt, dtheta / (steps * dt), f / steps, dv};
 }

@@ -53,8 +53,8 @@ class WalkRows {
   void AppendRest(double duration_s) {
     if (duration_s == 0) return;
     times_s_.push_back(times_s_.back() + duration_s);
-    positions_m_.push_back(Vector3d(positions_m_.back()));
-    angles_rad_.push_back(Vector3d(angles_rad_.back()));
+    positions_m_.push_back(positions_m_.back());
+    angles_rad_.push_back(angles_rad_.back());
   }
 
   void AppendLeg(double s_begin_m, const SpeedProfile& profile) {

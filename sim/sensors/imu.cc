@@ -65,10 +65,11 @@ class Imu final : public Sensor {
 
   SensorValue Sample(std::int64_t k, const TruthWindow& window) override {
     Demand(k == next_++, "an IMU is sampled once per interval, in order");
-    const ImuInterval truth = CalcImuInterval(window, SampleTime(k, rate_), DueTime(k), X_BS_.p, gravity_W_);
+    const TrueTime due = DueTime(k);
+    const ImuInterval truth = CalcImuInterval(window, SampleTime(k, rate_), due, X_BS_.p, gravity_W_);
     const Vector3d accel_error = accel_.DrawError(k);
     ImuSample sample;
-    sample.stamp = clock_.ToRobot(DueTime(k));
+    sample.stamp = clock_.ToRobot(due);
     sample.w_WS_S_rad_s = gyro_.Read(R_SB_ * truth.w_mean_rad_s, gyro_.DrawError(k));
     sample.f_WS_S_m_s2 = accel_.Read(R_SB_ * truth.f_mean_m_s2, accel_error);
     if (increments_) {

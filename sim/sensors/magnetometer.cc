@@ -47,11 +47,12 @@ class Magnetometer final : public Sensor {
   Pose X_BS() const override { return {Vector3d::Zero(), q_BS_}; }
 
   SensorValue Sample(std::int64_t k, const TruthWindow& window) override {
-    const Quaterniond q_WS = Interpolate(window, DueTime(k)).X_WB.q * q_BS_;
+    const TrueTime due = DueTime(k);
+    const Quaterniond q_WS = Interpolate(window, due).X_WB.q * q_BS_;
     const auto n = context_.random.Normals(static_cast<std::uint64_t>(k), 0);
     const Vector3d m_S = params_.soft_iron * (q_WS.conjugate() * params_.field_W_T) + params_.hard_iron_T +
                          params_.noise_sd_T * Vector3d(n[0], n[1], n[2]);
-    return MagSample{context_.clock.ToRobot(DueTime(k)), output_.Read(m_S)};
+    return MagSample{context_.clock.ToRobot(due), output_.Read(m_S)};
   }
 
  private:

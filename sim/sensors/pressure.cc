@@ -46,10 +46,11 @@ class PressureSensor final : public Sensor {
   Pose X_BS() const override { return {}; }
 
   SensorValue Sample(std::int64_t k, const TruthWindow& window) override {
+    const TrueTime due = DueTime(k);
     const double noise_Pa =
         noise_sd_Pa_ * context_.random.Normals(static_cast<std::uint64_t>(k), kNoiseSlot)[0];
-    const double truth_Pa = Interpolate(window, DueTime(k)).pressure_Pa;
-    return PressureSample{context_.clock.ToRobot(DueTime(k)), output_.Read(truth_Pa + offset_Pa_ + noise_Pa)};
+    const double truth_Pa = Interpolate(window, due).pressure_Pa;
+    return PressureSample{context_.clock.ToRobot(due), output_.Read(truth_Pa + offset_Pa_ + noise_Pa)};
   }
 
  private:
