@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "base/number.h"
@@ -10,15 +11,15 @@
 
 namespace piperun::scenarios {
 
-/// One row of a CSV file: values separated by commas, doubles in shortest round-trip decimals. The row ends
-/// when the object is destroyed.
+/// Ends a CsvRow.
+struct EndOfRow {};
+inline constexpr EndOfRow kEndOfRow;
+
+/// One row of a CSV file: values separated by commas, doubles in shortest round-trip decimals, ended by
+/// kEndOfRow (which may write to the disk, and fail).
 class CsvRow {
  public:
   explicit CsvRow(OutputFile& file) : file_(file) {}
-  ~CsvRow() { file_.EndRow(); }
-  CsvRow(const CsvRow&) = delete;
-  CsvRow& operator=(const CsvRow&) = delete;
-
   CsvRow& operator<<(double value) {
     Separate();
     AppendNumber(file_.text(), value);
@@ -38,6 +39,12 @@ class CsvRow {
   CsvRow& operator<<(const Vector3d& v) { return *this << v.x() << v.y() << v.z(); }
   /// w, x, y, z
   CsvRow& operator<<(const Quaterniond& q) { return *this << q.w() << q.x() << q.y() << q.z(); }
+  /// an empty field when there is no value
+  CsvRow& operator<<(const std::optional<double>& value) {
+    return value ? *this << *value : *this << std::string_view{};
+  }
+
+  void operator<<(EndOfRow) { file_.EndRow(); }
 
  private:
   void Separate() {

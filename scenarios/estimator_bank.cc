@@ -14,7 +14,7 @@ constexpr std::string_view kLeaksHeader = "chainage_m,sigma_m,x_m,y_m,z_m,t_cpa_
 
 void WriteTrackRow(OutputFile& file, const estimator::NavState& nav) {
   CsvRow(file) << static_cast<std::int64_t>(nav.stamp.time_since_epoch().count()) << nav.chainage_m
-               << nav.chainage_sd_m << nav.p_W << nav.q_WB << nav.v_W_m_s << nav.gyro_bias_rad_s;
+               << nav.chainage_sd_m << nav.p_W << nav.q_WB << nav.v_W_m_s << nav.gyro_bias_rad_s << kEndOfRow;
 }
 
 /// TUM: seconds with nine decimals, position, quaternion with w last, separated by blanks.
@@ -37,15 +37,9 @@ void WriteLeaks(const std::filesystem::path& path, const std::vector<estimator::
   OutputFile file(path);
   file.Append(kLeaksHeader);
   for (const estimator::LeakEstimate& leak : leaks) {
-    CsvRow row(file);
-    row << leak.chainage_m << leak.sigma_m << leak.p_W
-        << static_cast<std::int64_t>(leak.t_cpa.time_since_epoch().count());
-    if (leak.flow_m3_s) {
-      row << *leak.flow_m3_s;
-    } else {
-      row << std::string_view("");
-    }
-    row << leak.confidence;
+    CsvRow(file) << leak.chainage_m << leak.sigma_m << leak.p_W
+                 << static_cast<std::int64_t>(leak.t_cpa.time_since_epoch().count()) << leak.flow_m3_s
+                 << leak.confidence << kEndOfRow;
   }
   file.Close();
 }

@@ -64,14 +64,14 @@ class ImuWriter : public CsvWriter {
       : CsvWriter(entry, X_BS, folder, kImuHeader) {}
   void Write(const Measurement& measurement) override {
     const auto& sample = std::get<ImuSample>(measurement.value);
-    CsvRow(data_) << Nanoseconds(sample.stamp) << sample.w_WS_S_rad_s << sample.f_WS_S_m_s2;
+    CsvRow(data_) << Nanoseconds(sample.stamp) << sample.w_WS_S_rad_s << sample.f_WS_S_m_s2 << kEndOfRow;
     if (!sample.increments) return;
     if (!increments_) {
       increments_ = std::make_unique<OutputFile>(folder_ / "increments.csv");
       increments_->Append(kIncrementsHeader);
     }
     CsvRow(*increments_) << Nanoseconds(sample.stamp) << sample.increments->dtheta_S_rad
-                         << sample.increments->dv_S_m_s;
+                         << sample.increments->dv_S_m_s << kEndOfRow;
   }
   void Close() override {
     CsvWriter::Close();
@@ -88,7 +88,7 @@ class MagWriter : public CsvWriter {
       : CsvWriter(entry, X_BS, folder, kMagHeader) {}
   void Write(const Measurement& measurement) override {
     const auto& sample = std::get<MagSample>(measurement.value);
-    CsvRow(data_) << Nanoseconds(sample.stamp) << sample.m_S_T;
+    CsvRow(data_) << Nanoseconds(sample.stamp) << sample.m_S_T << kEndOfRow;
   }
 };
 
@@ -98,7 +98,7 @@ class PressureWriter : public CsvWriter {
       : CsvWriter(entry, X_BS, folder, kPressureHeader) {}
   void Write(const Measurement& measurement) override {
     const auto& sample = std::get<PressureSample>(measurement.value);
-    CsvRow(data_) << Nanoseconds(sample.stamp) << sample.pressure_Pa;
+    CsvRow(data_) << Nanoseconds(sample.stamp) << sample.pressure_Pa << kEndOfRow;
   }
 };
 

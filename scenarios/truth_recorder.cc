@@ -30,14 +30,8 @@ std::int64_t RefineApproach_ns(const sim::TruthState& closest, double leak_chain
 }
 
 void WriteLeak(OutputFile& file, const TrueLeak& leak) {
-  CsvRow row(file);
-  row << std::string_view(leak.id) << std::string_view(leak.pipe) << leak.s_m << leak.chainage_m << leak.p_W
-      << leak.flow_m3_s << leak.t_cpa_ns;
-  if (leak.snr_dB) {
-    row << *leak.snr_dB;
-  } else {
-    row << std::string_view("");
-  }
+  CsvRow(file) << std::string_view(leak.id) << std::string_view(leak.pipe) << leak.s_m << leak.chainage_m
+               << leak.p_W << leak.flow_m3_s << leak.t_cpa_ns << leak.snr_dB << kEndOfRow;
 }
 
 }  // namespace
@@ -69,14 +63,14 @@ void TruthRecorder::WriteRow(const sim::TruthState& state) {
   const std::string& pipe = state.pipe < 0 ? kNoPipe : assembly_.network->pipe(state.pipe).id;
   CsvRow(ball_) << Nanoseconds(state.time) << std::string_view(pipe) << state.s_m << state.chainage_m
                 << state.X_WB.p << state.X_WB.q << state.v_WB_W << state.w_WB_B << state.f_WB_B
-                << state.water_speed_m_s << static_cast<std::int64_t>(state.contact);
+                << state.water_speed_m_s << static_cast<std::int64_t>(state.contact) << kEndOfRow;
   const Pose X_BS = assembly_.imu ? assembly_.imu->sensor().X_BS() : Pose{};
   const auto bias = assembly_.imu ? assembly_.imu->sensor().bias() : std::nullopt;
   const Pose X_WS = state.X_WB * X_BS;
   const Vector3d v_WS_W = state.v_WB_W + state.X_WB.q * state.w_WB_B.cross(X_BS.p);
   CsvRow(groundtruth_) << Nanoseconds(state.time) << X_WS.p << X_WS.q << v_WS_W
                        << (bias ? bias->gyro_rad_s : Vector3d::Zero().eval())
-                       << (bias ? bias->accel_m_s2 : Vector3d::Zero().eval());
+                       << (bias ? bias->accel_m_s2 : Vector3d::Zero().eval()) << kEndOfRow;
 }
 
 void TruthRecorder::UpdateApproach(std::size_t leak, const sim::TruthWindow& window) {

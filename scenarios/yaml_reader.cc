@@ -211,10 +211,24 @@ class MapReader : public ParamVisitor {
     if (found.entry) {
       Remember(Child(path_, info.name), found.entry->key_node);
     } else if (info.required) {
-      context_.Refuse(node_, path_,
-                      "the key '" + std::string(info.name) + "' is missing: " + std::string(info.doc));
+      RefuseMissing(info, spellings);
     }
     return found;
+  }
+
+  /// A required key that is missing was perhaps only misspelt.
+  [[noreturn]] void RefuseMissing(const ParamInfo& info, const std::vector<UnitAlias>& spellings) const {
+    std::vector<std::string> names;
+    for (const UnitAlias& spelling : spellings) names.push_back(spelling.key);
+    for (const Entry& entry : entries_) {
+      if (entry.used) continue;
+      if (const auto near = FindNearestName(entry.key, names)) {
+        context_.Refuse(entry.key_node, Child(path_, entry.key),
+                        "unknown key; did you mean '" + *near + "'?");
+      }
+    }
+    context_.Refuse(node_, path_,
+                    "the key '" + std::string(info.name) + "' is missing: " + std::string(info.doc));
   }
 
   void Remember(const std::string& path, const YAML::Node& node) const {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "base/check.h"
 #include "scenarios/assemble.h"
 #include "scenarios/embedded.h"
 #include "scenarios/estimator_input.h"
@@ -27,8 +28,10 @@ TEST(Catalogue, WhatEstimatorsAreToldHoldsNoLeak) {
   const Scenario scenario = LoadScenario("quickstart");
   const auto assembly = Assemble(scenario);
   EstimatorInput input = MakeEstimatorInput(scenario, *assembly);
-  const std::string text = WriteYaml([&](ParamVisitor& v) { input.Visit(v); });
-  EXPECT_EQ(text.find("leak"), text.rfind("leaks_")) << "only parameters of a locator may speak of leaks";
+  std::string text = WriteYaml([&](ParamVisitor& v) { input.Visit(v); });
+  const std::string own_parameter = "max_leaks";  // of a locator: how many to report, not how many there are
+  for (std::size_t at; (at = text.find(own_parameter)) != std::string::npos;) text.erase(at, own_parameter.size());
+  EXPECT_EQ(text.find("leak"), std::string::npos);
   EXPECT_EQ(text.find("hole_diameter"), std::string::npos);
   EXPECT_EQ(text.find("14.6"), std::string::npos) << "the place of leak L1";
 }

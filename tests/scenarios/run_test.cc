@@ -151,7 +151,7 @@ TEST(Run, LeavesNothingBehindWhenInterrupted) {
   RunOptions options;
   options.out = folder / "run";
   options.stop = &stop;
-  EXPECT_THROW(Run(MakeSmallScenario(), options), Interrupted);
+  EXPECT_THROW(scenarios::Run(MakeSmallScenario(), options), Interrupted);
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
@@ -160,13 +160,13 @@ TEST(Run, RefusesAnExistingFolderUnlessForced) {
   const Scenario scenario = MakeSmallScenario({"mission.time_limit_s=1"});
   RunOptions options;
   options.out = folder / "run";
-  Run(scenario, options);
-  EXPECT_THROW(Run(scenario, options), InputError);
+  scenarios::Run(scenario, options);
+  EXPECT_THROW(scenarios::Run(scenario, options), InputError);
   options.force = true;
-  EXPECT_NO_THROW(Run(scenario, options));
+  EXPECT_NO_THROW(scenarios::Run(scenario, options));
   fs::create_directory(folder / "precious");
   options.out = folder / "precious";  // no run folder: --force must not delete it
-  EXPECT_THROW(Run(scenario, options), InputError);
+  EXPECT_THROW(scenarios::Run(scenario, options), InputError);
   EXPECT_TRUE(fs::exists(folder / "precious"));
 }
 

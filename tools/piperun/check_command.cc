@@ -6,7 +6,7 @@
 #include <memory>
 #include <system_error>
 
-#include "base/check.h"
+#include "base/number.h"
 #include "scenarios/check.h"
 #include "scenarios/embedded.h"
 #include "scenarios/load.h"
@@ -63,7 +63,9 @@ void PrintTable(const std::vector<scenarios::CheckedScenario>& checked) {
   Table table({"scenario", "expectation", "found", "allowed", "result"});
   for (const scenarios::CheckedScenario& scenario : checked) {
     for (const auto& e : scenario.expectations) {
-      table.Add({scenario.name, e.path, e.found, e.allowed, e.kept ? "ok" : "FAILED"});
+      const auto number = ParseNumber(e.found);
+      table.Add({scenario.name, e.path, number ? fmt::format("{:.6g}", *number) : e.found, e.allowed,
+                 e.kept ? "ok" : "FAILED"});
     }
   }
   fmt::print("{}", table.Text());
