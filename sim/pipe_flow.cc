@@ -36,7 +36,7 @@ double PowerLaw(double exponent, double radius) {
 template <class F>
 double IntegrateHalfTurn(F f) {
   using std::numbers::pi;
-  constexpr int kPoints = 96;
+  constexpr int kPoints = 48;
   double sum = 0;
   for (int i = 0; i < kPoints; ++i) {
     const double t = (i + 0.5) / kPoints;
@@ -55,6 +55,8 @@ double IntegrateCore(double exponent, double r) {
 
 /// The disc is cut into arcs of constant distance from the axis. Those that close around it make up the core.
 double CalcDiscVelocity(double exponent, double lambda, double offset) {
+  const double area = std::numbers::pi * lambda * lambda;
+  if (offset == 0) return IntegrateCore(exponent, lambda) / area;
   const double inner = std::abs(offset - lambda), outer = offset + lambda;
   const double mid = 0.5 * (outer + inner), half = 0.5 * (outer - inner);
   const double arcs = half * IntegrateHalfTurn([&](double phi) {
@@ -65,7 +67,7 @@ double CalcDiscVelocity(double exponent, double lambda, double offset) {
                         return PowerLaw(exponent, rho) * rho * opening * std::sin(phi);
                       });
   const double core = offset < lambda ? IntegrateCore(exponent, lambda - offset) : 0;
-  return (core + (offset > 0 ? arcs : 0)) / (std::numbers::pi * lambda * lambda);
+  return (core + arcs) / area;
 }
 
 /// Mean of grad u over the disc = integral of u n over its rim / area.

@@ -5,7 +5,7 @@
 namespace piperun::sim {
 namespace {
 
-constexpr double kOnAxis_m = 1e-9;  // closer, no wall is nearer than another
+constexpr double kOnAxis_m = 1e-9;  // closer, no wall is nearest
 
 Pose MakeFrame(const Vector3d& origin_W, const Vector3d& x_W, const Vector3d& y_W) {
   Matrix3d R_WF;
@@ -61,11 +61,13 @@ double TubeWall::CalcGap(const RouteSpot& spot, const Vector3d& p_F, double trav
 
 WallContact TubeWall::Probe(const RouteSpot& spot, const Vector3d& p_F, const Vector3d& v_F, double radius_m,
                             double dt_s) const {
-  const Vector3d offset = CalcOffset(pieces_[spot.piece], p_F);
-  const double distance = offset.norm();
-  if (distance < kOnAxis_m) return {};
+  const Piece& piece = pieces_[spot.piece];
+  Vector3d offset = CalcOffset(piece, p_F);
+  // from the axis, where no wall is nearest, the sphere is about to meet the one it moves to
+  if (offset.norm() < kOnAxis_m) offset = CalcOffset(piece, p_F + dt_s * v_F);
+  if (offset.norm() < kOnAxis_m) return {};
   WallContact contact;
-  contact.normal_F = -offset / distance;
+  contact.normal_F = -offset.normalized();
   const double v_n = v_F.dot(contact.normal_F);
   const Vector3d step_F = (v_F - v_n * contact.normal_F) * dt_s;
   // a bend's inner side is shorter than its axis: twice the step bounds the chainage covered (D < R_c)

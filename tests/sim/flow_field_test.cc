@@ -1,0 +1,80 @@
+#include "sim/flow_field.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sim/hydraulics.h"
+#include "tests/support/pipes.h"
+
+namespace piperun::sim {
+namespace {
+
+using testing::MakePipeLine;
+using testing::PipeLine;
+
+const WaterProperties kWater{20, 1000, 1e-6, 1482};
+constexpr double kGravity = 9.81;
+
+SteadyFlow Solve(const PipeLine& line, double speed_m_s) {
+  const double flow = speed_m_s * line.network.pipe(0).area_m2();
+  return SolveSteadyFlow(line.network, line.route, {flow, 2e5}, {}, kWater, kGravity);
+}
+
+WaterAtBall EvalAt(const PipeLine& line, const SteadyFlow& flow, const Vector3d& p_W) {
+  const FlowField field(line.route, flow.timeline, kWater, kGravity, 0.03);
+  return field.Eval(FindRouteSpot(line.route, p_W, 0), p_W, {});
+}
+
+TEST(FlowField, OnTheInvertOfAStraightPipe) {
+  const PipeLine line = MakePipeLine({{0, 0, 5}, {100, 0, 5}}, {.roughness_m = 1e-4});
+  const SteadyFlow flow = Solve(line, 1);
+  const WaterAtBall water = EvalAt(line, flow, {10, 0, 5 - 0.045});
+  // f = 0.02011: n = 7.05, u_eff/U between 1.035 (n = 7) and 1.031 (n = 8)
+  EXPECT_NEAR(water.velocity_W.x(), 1.0348, 5e-4);
+  EXPECT_EQ(water.velocity_W.tail<2>().norm(), 0);
+  EXPECT_EQ(water.acceleration_W.norm(), 0);
+  // slower towards the wall, that is downwards: the shear turns things about +y, like rolling
+  EXPECT_GT(water.spin_W.y(), 1);
+  EXPECT_NEAR(water.spin_W.x(), 0, 1e-15);
+  // -dp/ds = f/D rho U^2/2 = 0.02011/0.15 * 500 = 67.0 Pa/m; REF: 7.6 mN on the ball
+  EXPECT_NEAR(water.pressure_fall_W_Pa_m.x(), 67.03, 0.02);
+  EXPECT_NEAR(water.pressure_Pa, 2e5 - 67.03 * 10 + 1000 * kGravity * 0.045, 0.3);
+  EXPECT_DOUBLE_EQ(water.bulk_speed_m_s, 1);
+}
+
+TEST(FlowField, TurnsAsAFreeVortexInABend) {
+  const PipeLine line = MakePipeLine({{0, 0, 0}, {10, 0, 0}, {10, 10, 0}}, {.bend_radius_m = 0.5});
+  const SteadyFlow flow = Solve(line, 1);
+  // middle of the bend; its centre is (9.5, 0.5); outward is (1, -1)/sqrt(2)
+  const Vector3d outward = Vector3d(1, -1, 0).normalized(), centre(9.5, 0.5, 0);
+  const WaterAtBall outer = EvalAt(line, flow, centre + 0.54 * outward);
+  const WaterAtBall inner = EvalAt(line, flow, centre + 0.46 * outward);
+  EXPECT_NEAR(outer.velocity_W.norm() * 0.54, inner.velocity_W.norm() * 0.46, 1e-12);
+  EXPECT_NEAR((outer.acceleration_W + outer.velocity_W.squaredNorm() / 0.54 * outward).norm(), 0, 1e-12);
+  EXPECT_NEAR((inner.acceleration_W + inner.velocity_W.squaredNorm() / 0.46 * outward).norm(), 0, 1e-12);
+}
+
+TEST(FlowField, RunsAlongTheRouteThroughAReversedPipe) {
+  const PipeLine line = MakePipeLine({{0, 0, 0}, {50, 0, 0}});
+  const Route back = FindRoute(line.network, 1, 0);
+  const SteadyFlow flow = SolveSteadyFlow(line.network, back, {0.01, 2e5}, {}, kWater, kGravity);
+  const FlowField field(back, flow.timeline, kWater, kGravity, 0.03);
+  const Vector3d p_W(30, 0, -0.045);
+  const WaterAtBall water = field.Eval(FindRouteSpot(back, p_W, 0), p_W, {});
+  EXPECT_LT(flow.timeline.Eval(0, 30, {}).flow_m3_s, 0);
+  EXPECT_GT(water.bulk_speed_m_s, 0);
+  EXPECT_LT(water.velocity_W.x(), 0);
+  EXPECT_LT(water.pressure_fall_W_Pa_m.x(), 0);
+}
+
+TEST(FlowField, IsAtRestInStillWater) {
+  const PipeLine line = MakePipeLine({{0, 0, 0}, {50, 0, 0}});
+  const WaterAtBall water = EvalAt(line, Solve(line, 0), {20, 0.01, 0});
+  EXPECT_EQ(water.velocity_W.norm(), 0);
+  EXPECT_EQ(water.spin_W.norm(), 0);
+  EXPECT_NEAR(water.pressure_Pa, 2e5, 1e-9);
+}
+
+}  // namespace
+}  // namespace piperun::sim
