@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "base/water.h"
 
 namespace piperun::acoustics {
@@ -29,9 +31,9 @@ double CalcWallPressurePsd(const WallFlow& flow, double f_Hz);
 /// Uc = 0.7 Ue; a fit to Corcos, J. Acoust. Soc. Am. 35, 192 (1963). Eddies smaller than the face cancel.
 double CalcFaceAveraging(const WallFlow& flow, double face_radius_m, double f_Hz);
 
-/// Speed at which the eddies pass a ball: |U - v| + 0.1 U, slip plus the turbulence that carries it.
+/// Speed at which the eddies pass a ball: |U - v| + 0.1 |U|, slip plus the turbulence that carries it.
 inline double CalcEddySpeed(double slip_speed_m_s, double water_speed_m_s) {
-  return slip_speed_m_s + 0.1 * water_speed_m_s;
+  return slip_speed_m_s + 0.1 * std::abs(water_speed_m_s);
 }
 
 }  // namespace piperun::acoustics

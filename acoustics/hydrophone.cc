@@ -1,15 +1,11 @@
 #include "acoustics/hydrophone.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <string>
-#include <utility>
+#include <vector>
 
 #include "acoustics/gaussian_frames.h"
 #include "acoustics/listener_spectrum.h"
-#include "base/check.h"
-#include "base/number.h"
 
 namespace piperun::acoustics {
 namespace {
@@ -27,21 +23,14 @@ double RoundToEven(double x) {
   return (x + kRounder) - kRounder;
 }
 
-void RequireRange(double value, const Range& range, const char* key) {
-  if (std::isfinite(value) && range.Contains(value)) return;
-  throw InputError(FormatNumber(value) + " is not allowed; the range is " + range.Text(), key);
+bool IsFinite(const ListenerState& s) {
+  return std::isfinite(s.chainage_m) && std::isfinite(s.water_speed_m_s) && std::isfinite(s.slip_speed_m_s) &&
+         std::isfinite(s.bore_radius_m);
 }
 
-const HydrophoneParams& Checked(const HydrophoneParams& p) {
-  RequireRange(p.rate_Hz, Range::Between(1000, 384000), "rate_Hz");
-  RequireRange(p.full_scale_Pa, Range::Positive(), "full_scale_Pa");
-  RequireRange(p.high_pass_Hz, Range::NonNegative(), "high_pass_Hz");
-  RequireRange(p.face_radius_m, Range::Between(0, 0.1), "face_radius_m");
-  RequireRange(p.self_noise_dB_re_1uPa2_Hz, Range::Between(-200, 200), "self_noise_dB_re_1uPa2_Hz");
-  if (p.bits != 16 && p.bits != 24) {
-    throw InputError(std::to_string(p.bits) + " is not allowed; a converter has 16 or 24 bits", "bits");
-  }
-  return p;
+const HydrophoneParams& Checked(const HydrophoneParams& params) {
+  params.Check();
+  return params;
 }
 
 }  // namespace
@@ -73,7 +62,12 @@ class Hydrophone::Impl {
 
  private:
   std::span<const float> AdvanceFrame(const ListenerAt& listener) {
-    spectrum_.Calc(listener(SampleTime(next_frame_ * hop_samples(), rate_)), psd_);
+    const ListenerState state = listener(SampleTime(next_frame_ * hop_samples(), rate_));
+    if (IsFinite(state)) {
+      spectrum_.Calc(state, psd_);
+    } else {
+      std::fill(psd_.begin(), psd_.end(), 0.F);
+    }
     return frames_.Advance(next_frame_++, psd_);
   }
 

@@ -27,6 +27,9 @@ struct HydrophoneParams : ParamsOf<HydrophoneParams> {
   /// Pascals per count: full_scale_Pa / largest_code(); pressure = counts * scale_Pa().
   double scale_Pa() const;
   void Visit(ParamVisitor& v) override;
+  /// Throws InputError for what the ranges in Visit cannot say: 16 or 24 bits, a rate of whole hertz (as
+  /// audio files have it) within its range.
+  void Check() const;
 };
 
 /// |H|^2 = f^2 / (f^2 + f_c^2) of the input stage, through which all sound in the water passes.
@@ -54,7 +57,7 @@ class Hydrophone {
  public:
   using ListenerAt = std::function<ListenerState(TrueTime)>;
 
-  /// Throws InputError when the parameters lie outside their ranges.
+  /// Parameters within the ranges of their Visit. Throws as HydrophoneParams::Check does.
   Hydrophone(const HydrophoneParams& params, AcousticScene scene, const RandomStream& random);
   ~Hydrophone();
   Hydrophone(Hydrophone&&) noexcept;
@@ -63,7 +66,8 @@ class Hydrophone {
   /// How far beyond a block's last sample the listener is asked for at most: half a frame.
   Duration lookahead() const;
   /// Next counts.size() samples; sample n is at SampleTime(n, rate). The listener is asked for once per half
-  /// frame, at increasing times from zero on. Clipped samples are counted.
+  /// frame, at increasing times from zero on; where its state is not finite (a run that has gone wrong) the
+  /// frame is silent. Clipped samples are counted.
   void Render(const ListenerAt& listener, std::span<std::int32_t> counts);
   std::int64_t clipped_samples() const;
 

@@ -66,10 +66,10 @@ void ListenerSpectrum::TabulateLosses(const AcousticScene& scene, double bin_wid
 void ListenerSpectrum::TabulateLeaks(const AcousticScene& scene, const std::vector<double>& high_pass,
                                      double bin_width_Hz) {
   for (const SoundingLeak& leak : scene.leaks) {
-    LeakRow& row = leaks_.emplace_back(leak.chainage_m, std::vector<float>(bins()));
+    leaks_.push_back({leak.chainage_m, std::vector<float>(bins())});
     for (std::size_t k = 0; k < bins(); ++k) {
       const double f_Hz = static_cast<double>(k) * bin_width_Hz;
-      row.psd[k] = static_cast<float>(high_pass[k] * CalcLeakPsdAtHole(scene, leak, f_Hz));
+      leaks_.back().psd[k] = static_cast<float>(high_pass[k] * CalcLeakPsdAtHole(scene, leak, f_Hz));
     }
   }
 }

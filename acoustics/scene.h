@@ -11,7 +11,7 @@
 
 namespace piperun::acoustics {
 
-/// What the hydrophone knows of the ball that carries it, at an instant. Every value is finite.
+/// What the hydrophone knows of the ball that carries it, at an instant.
 struct ListenerState {
   double chainage_m = 0;
   double water_speed_m_s = 0;  ///< bulk velocity where the ball is

@@ -4,6 +4,7 @@
 #include <complex>
 #include <numbers>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace piperun::acoustics {
@@ -29,25 +30,27 @@ inline double Correlation(std::span<const double> x, std::span<const double> y) 
   return xy / std::sqrt(MeanSquare(x) * MeanSquare(y)) / static_cast<double>(x.size());
 }
 
-/// Radix-2 transform by the textbook recursion, independent of the library under test.
-inline std::vector<std::complex<double>> Fft(const std::vector<std::complex<double>>& x) {
+/// Discrete Fourier transform of a power of two of values (Cooley & Tukey), independent of the library under
+/// test.
+inline void Fft(std::vector<std::complex<double>>& x) {
   const std::size_t n = x.size();
-  if (n == 1) return x;
-  std::vector<std::complex<double>> even, odd;
-  for (std::size_t i = 0; i < n; i += 2) {
-    even.push_back(x[i]);
-    odd.push_back(x[i + 1]);
+  for (std::size_t i = 1, j = 0; i < n; ++i) {  // bit-reversed order
+    std::size_t bit = n >> 1;
+    for (; j & bit; bit >>= 1) j ^= bit;
+    j ^= bit;
+    if (i < j) std::swap(x[i], x[j]);
   }
-  even = Fft(even);
-  odd = Fft(odd);
-  std::vector<std::complex<double>> y(n);
-  for (std::size_t k = 0; k < n / 2; ++k) {
-    const auto turned =
-        std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n)) * odd[k];
-    y[k] = even[k] + turned;
-    y[k + n / 2] = even[k] - turned;
+  for (std::size_t size = 2; size <= n; size *= 2) {
+    for (std::size_t k = 0; k < size / 2; ++k) {
+      const auto turn =
+          std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(size));
+      for (std::size_t i = k; i < n; i += size) {
+        const auto odd = turn * x[i + size / 2];
+        x[i + size / 2] = x[i] - odd;
+        x[i] += odd;
+      }
+    }
   }
-  return y;
 }
 
 /// One-sided PSD by Welch's method: Hann windows of `size` samples, half overlapped.
@@ -55,13 +58,13 @@ inline std::vector<double> Welch(std::span<const double> x, std::size_t size, do
   std::vector<double> psd(size / 2 + 1, 0);
   double count = 0;
   for (std::size_t start = 0; start + size <= x.size(); start += size / 2, ++count) {
-    std::vector<std::complex<double>> frame;
+    std::vector<std::complex<double>> frame(size);
     for (std::size_t n = 0; n < size; ++n) {
       const double s = std::sin(std::numbers::pi * static_cast<double>(n) / static_cast<double>(size));
-      frame.emplace_back(s * s * x[start + n]);
+      frame[n] = s * s * x[start + n];
     }
-    const auto spectrum = Fft(frame);
-    for (std::size_t k = 0; k < psd.size(); ++k) psd[k] += std::norm(spectrum[k]);
+    Fft(frame);
+    for (std::size_t k = 0; k < psd.size(); ++k) psd[k] += std::norm(frame[k]);
   }
   const double window_power = 0.375 * static_cast<double>(size);  // sum of sin^4
   for (double& p : psd) p *= 2 / (count * window_power * rate_Hz);

@@ -4,8 +4,8 @@
 
 #include "acoustics/level.h"
 #include "tests/acoustics/scenes.h"
-#include "tests/acoustics/set_number.h"
 #include "tests/acoustics/statistics.h"
+#include "tests/support/set_params.h"
 
 namespace piperun::acoustics {
 namespace {
@@ -61,12 +61,9 @@ TEST(TurbulentJet, LevelInThePipeFollowsTheTableOfMains) {
 }
 
 TEST(TurbulentJet, DipoleExponentsGivePowerGrowingAsFlowTimesDropToTheTwoAndAHalf) {
-  const LeakSoundKind& kind = LeakSoundKinds().front();
-  const auto params = kind.make_params();
-  SetNumber a("flow_exponent", -0.5), b("pressure_exponent", 1.25);
-  params->Visit(a);
-  params->Visit(b);
-  ASSERT_TRUE(a.found() && b.found());
+  const auto& kind = piperun::testing::FindKind(LeakSoundKinds(), "turbulent_jet");
+  const auto params =
+      piperun::testing::MakeParamsOf(kind, {{"flow_exponent", -0.5}, {"pressure_exponent", 1.25}});
   const auto power = [&](double flow, double drop_Pa) {
     const double rms = Rms(*kind.make(*params, 2e-3, {flow, drop_Pa}, 1000));
     return rms * rms;
