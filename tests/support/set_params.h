@@ -33,7 +33,10 @@ class ParamWriter : public ParamVisitor {
     Take<double>(info, [&](double x) { Check(info, range, (value = x).value()); });
   }
   void Integer(const ParamInfo& info, std::int64_t min, std::int64_t max, std::int64_t& value) override {
-    Take<double>(info, [&](double x) { value = std::clamp(static_cast<std::int64_t>(x), min, max); });
+    Take<double>(info, [&](double x) {
+      value = static_cast<std::int64_t>(x);
+      EXPECT_TRUE(value >= min && value <= max) << info.name << " = " << value;
+    });
   }
   void Flag(const ParamInfo& info, bool& value) override {
     Take<bool>(info, [&](bool x) { value = x; });
