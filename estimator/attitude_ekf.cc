@@ -8,6 +8,7 @@ namespace piperun::estimator {
 namespace {
 
 constexpr double kInitialTiltSd_rad = 0.05;
+constexpr double kExcessSigmas = 3;  // |f| - g beyond this is motion, not noise
 constexpr int kBias = 3, kScale = 6;
 
 double Squared(double x) { return x * x; }
@@ -83,14 +84,19 @@ void AttitudeEkf::PropagateCovariance(const ImuStep& step) {
   P_.diagonal().segment<3>(kBias).array() += Squared(params_.gyro_bias_walk_rad_s2_sqrtHz) * step.dt_s;
 }
 
-void AttitudeEkf::UpdateGravity(const ImuStep& step) {
+double AttitudeEkf::GravityVariance(double interval_s, double motion_sd_m_s2) const {
+  const double density = Squared(params_.accelerometer_noise_m_s2_sqrtHz) +
+                         2 * params_.motion_correlation_s * Squared(motion_sd_m_s2);
+  return density / interval_s / Squared(g_m_s2_);
+}
+
+void AttitudeEkf::UpdateGravity(const ImuStep& step, double motion_acceleration_sd_m_s2) {
   const Quaterniond& q = step.f_phase == 0 ? q_WS_begin_ : q_WS_mid_;
   const Vector3d y = (q * step.f_S_m_s2) / g_m_s2_;
   const double z_x = y.y(), z_y = -y.x();
-  const double density = Squared(params_.accelerometer_noise_m_s2_sqrtHz) +
-                         2 * params_.motion_correlation_s * Squared(params_.motion_acceleration_sd_m_s2);
   const double excess = y.norm() - 1;
-  double variance = density / (step.dt_s - step.missing_s) / Squared(g_m_s2_) + Squared(excess);
+  double variance = GravityVariance(step.dt_s - step.missing_s, motion_acceleration_sd_m_s2);
+  variance += std::max(0.0, Squared(excess) - kExcessSigmas * kExcessSigmas * variance);
 
   const double S00 = P_(0, 0) + variance, S11 = P_(1, 1) + variance, S01 = P_(0, 1);
   const double nis = (S11 * z_x * z_x - 2 * S01 * z_x * z_y + S00 * z_y * z_y) / (S00 * S11 - S01 * S01);

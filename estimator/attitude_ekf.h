@@ -34,12 +34,13 @@ struct AttitudeParams {
 ///     gravity:  R f_S = g up - dtheta x g up  ->  two numbers, dtheta_x and dtheta_y
 ///     field:    psi_ref - psi(R m_S) = dtheta_z - m_z (m_x dtheta_x + m_y dtheta_y) / m_h^2
 ///
-/// The heading measurement may change only dtheta_z and the bias about the vertical, so that no magnetic
-/// disturbance tilts the attitude; its covariance update is Joseph's, which holds for any gain.
+/// The heading measurement may change only dtheta_z and the bias about the vertical of the moment, so that no
+/// magnetic disturbance tilts the attitude (through the bias of a rolling ball a sustained one does, by less
+/// than a fiftieth of the heading error); its covariance update is Joseph's, which holds for any gain.
 /// Gravity's noise is white noise of the accelerometer plus the motion's own acceleration (sd and correlation
-/// time, as an equivalent white density), plus (|f| - g)^2. A gravity innovation beyond the gate is weighted
-/// down until its NIS equals the gate, so the filter cannot lock itself out; a magnetic one is discarded.
-/// Range: |w| dt < 1 rad. Covariances are exact to first order in dtheta.
+/// time, as an equivalent white density), plus (|f| - g)^2 beyond three sigma. A gravity innovation beyond
+/// the gate is weighted down until its NIS equals the gate, so the filter cannot lock itself out; a magnetic
+/// one is discarded. Range: |w| dt < 1 rad. Covariances are exact to first order in dtheta.
 class AttitudeEkf final : public AttitudeFilter {
  public:
   /// `field_W_T` zero: no magnetic reference.
@@ -47,7 +48,7 @@ class AttitudeEkf final : public AttitudeFilter {
 
   void AlignTilt(const Vector3d& f_S_m_s2) override;
   void Propagate(const ImuStep& step) override;
-  void UpdateGravity(const ImuStep& step) override;
+  void UpdateGravity(const ImuStep& step, double motion_acceleration_sd_m_s2) override;
   void UpdateMagnetic(const Vector3d& m_S_T, const Vector3d& ahead_S_rad) override;
   void UpdateHeading(double offset_rad, double sd_rad) override;
   void UpdateRestRate(const Vector3d& w_S_rad_s, double duration_s) override;
@@ -63,6 +64,8 @@ class AttitudeEkf final : public AttitudeFilter {
   using Vector9d = Eigen::Matrix<double, 9, 1>;
   using Matrix9d = Eigen::Matrix<double, 9, 9>;
 
+  /// Of one direction component, from an interval's mean specific force.
+  double GravityVariance(double interval_s, double motion_sd_m_s2) const;
   void PropagateCovariance(const ImuStep& step);
   /// One scalar measurement of error component i.
   void UpdateComponent(int i, double z, double variance);

@@ -20,8 +20,9 @@ class AttitudeFilter {
   /// Takes the tilt from one specific force, as of a sensor at rest; the heading is arbitrary.
   virtual void AlignTilt(const Vector3d& f_S_m_s2) = 0;
   virtual void Propagate(const ImuStep& step) = 0;
-  /// Specific force of the step just propagated, freed of lever-arm terms.
-  virtual void UpdateGravity(const ImuStep& step) = 0;
+  /// Specific force of the step just propagated, freed of lever-arm terms, of a body whose own acceleration
+  /// has the given standard deviation.
+  virtual void UpdateGravity(const ImuStep& step, double motion_acceleration_sd_m_s2) = 0;
   /// Magnetic flux density in the frame S that Exp(ahead) turns the present one into.
   virtual void UpdateMagnetic(const Vector3d& m_S_T, const Vector3d& ahead_S_rad) = 0;
   /// Heading known otherwise: the attitude should be turned by `offset_rad` about the vertical.

@@ -6,11 +6,13 @@ namespace piperun::estimator {
 namespace {
 
 constexpr std::size_t kMaxWaiting = 4096;
+constexpr std::size_t kExpectedLeaks = 256;
 
 }  // namespace
 
 FrameLocator::FrameLocator(const BandParams& params) : frames_(params), waiting_(kMaxWaiting) {
   params.Check();
+  leaks_.reserve(kExpectedLeaks);
 }
 
 void FrameLocator::IngestNav(const NavState& nav) {

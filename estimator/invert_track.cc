@@ -1,12 +1,20 @@
 #include "estimator/invert_track.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace piperun::estimator {
 namespace {
 
 constexpr double kVertical = 1e-3;  // sine of the angle to the vertical below which a pipe has no invert
+
+/// Where an arc's tangent lies closest to a direction; its beginning for a line.
+double ParallelPlace_m(const CentrelinePiece& line, const Vector3d& direction_W) {
+  if (line.straight()) return line.s_begin_m;
+  const double turn = std::atan2(direction_W.dot(line.normal_begin_W), direction_W.dot(line.tangent_begin_W));
+  return line.s_begin_m + turn / line.curvature_1_m;
+}
 
 }  // namespace
 
@@ -20,6 +28,25 @@ InvertPoint InvertTrack::Eval(double chainage_m) {
   const double below_m = sine > kVertical ? piece.radius_m - ball_radius_m_ : 0;
   return {axis.p_W - below_m * normal_W_, axis.tangent_W, normal_W_,
           1 + below_m * axis.curvature_W.dot(normal_W_)};
+}
+
+Vector3d InvertTrack::FindTangent(double chainage_m, double slack_m, const Vector3d& course_W) const {
+  const double low_m = chainage_m - slack_m, high_m = chainage_m + slack_m;
+  const std::size_t last = route_.FindPiece(high_m, piece_);
+  Vector3d best = Vector3d::Zero();
+  double best_dot = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = route_.FindPiece(low_m, piece_); i <= last; ++i) {
+    const CentrelinePiece& line = route_.pieces()[i].line;
+    const double begin_m = i > 0 ? std::max(low_m, line.s_begin_m) : low_m;
+    const double end_m = i < last ? line.s_end_m() : high_m;
+    const double s_m = std::clamp(ParallelPlace_m(line, course_W), begin_m, end_m);
+    const Vector3d tangent_W = EvalCentreline(line, s_m).tangent_W;
+    if (tangent_W.dot(course_W) > best_dot) {
+      best = tangent_W;
+      best_dot = tangent_W.dot(course_W);
+    }
+  }
+  return best;
 }
 
 double InvertTrack::Project(const Vector3d& p_W, double near_m, double reach_m) const {

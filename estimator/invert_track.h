@@ -21,6 +21,9 @@ class InvertTrack {
   /// Beyond the route's ends its first and last piece go on. In a vertical pipe there is no invert: the
   /// normal stays what it was and the ball is taken to the axis.
   InvertPoint Eval(double chainage_m);
+  /// The tangent within `slack_m` of a chainage that lies closest to a course: what the ball really follows
+  /// when the chainage is a little wrong and a bend is near.
+  Vector3d FindTangent(double chainage_m, double slack_m, const Vector3d& course_W) const;
   /// Chainage of the point of the route nearest to p, searched on the pieces within `reach_m` of `near_m`.
   double Project(const Vector3d& p_W, double near_m, double reach_m) const;
   /// True when the route is straight for `margin_m` on both sides.

@@ -9,8 +9,8 @@ struct AttitudeStep {
   double dt_s = 0;
   Vector3d rotation_W_rad = Vector3d::Zero();  ///< Log(R_k R_(k-1)^T), both corrected by all measurements
   Vector3d f_W_m_s2 = Vector3d::Zero();        ///< mean specific force of the ball's centre
-  Vector3d w_S_rad_s = Vector3d::Zero();
-  double tilt_variance_rad2 = 0;  ///< larger of the two
+  Vector3d f_S_m_s2 = Vector3d::Zero();        ///< the same in the sensor frame
+  double tilt_variance_rad2 = 0;               ///< larger of the two
   double heading_variance_rad2 = 0;
 };
 

@@ -80,10 +80,10 @@ void PrintedEkf::Propagate(const ImuStep& step) {
       Quaterniond(q_WS_.w() + dq[0], q_WS_.x() + dq[1], q_WS_.y() + dq[2], q_WS_.z() + dq[3]).normalized();
 }
 
-void PrintedEkf::UpdateGravity(const ImuStep& step) {
+void PrintedEkf::UpdateGravity(const ImuStep& step, double motion_acceleration_sd_m_s2) {
   f_S_ = step.f_S_m_s2;
   const double sd =
-      (params_.accelerometer_noise_m_s2_sqrtHz / std::sqrt(step.dt_s) + params_.motion_acceleration_sd_m_s2) /
+      (params_.accelerometer_noise_m_s2_sqrtHz / std::sqrt(step.dt_s) + motion_acceleration_sd_m_s2) /
       g_m_s2_;
   Update<3>(CalcUpJacobian(q_WS_), f_S_ / g_m_s2_ - CalcUp(q_WS_), sd * sd);
 }

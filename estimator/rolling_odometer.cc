@@ -5,8 +5,9 @@
 namespace piperun::estimator {
 namespace {
 
-constexpr double kCourseMemory_m = 0.05;
-constexpr double kCourseKnown_m = 0.02;  // of displacement remembered
+constexpr double kCourseMemory_m = 0.01;
+constexpr double kSlackSigmas = 3, kSlack_m = 0.05;
+constexpr double kCourseKnown_m = 0.005;  // of displacement remembered
 
 }  // namespace
 
@@ -39,17 +40,20 @@ double RollingOdometer::Advance(const AttitudeStep& step) {
   const InvertPoint here = track_ ? track_->Eval(state_.chainage_m)
                                   : InvertPoint{state_.p_W, Vector3d::UnitX(), Vector3d::UnitZ()};
   const Vector3d roll_W = radius_m_ * step.rotation_W_rad.cross(here.normal_W);
+  const Vector3d before_W = recent_W_;  // without this step, so that noise at rest does not count itself
   recent_W_ = std::exp(-roll_W.norm() / kCourseMemory_m) * recent_W_ + roll_W;
   if (track_) {
-    const double ds_m = roll_W.dot(here.tangent_W) / here.stretch;
+    const double slack_m = kSlackSigmas * state_.chainage_sd_m + kSlack_m;
+    const Vector3d along_W = track_->FindTangent(state_.chainage_m, slack_m, before_W);
+    const double ds_m = roll_W.dot(along_W) / here.stretch;
     state_.p_W = track_->Eval(state_.chainage_m + ds_m).p_W;
     state_.v_W_m_s = (ds_m * here.stretch / step.dt_s) * here.tangent_W;
     return ds_m;
   }
   state_.p_W += roll_W;
   state_.v_W_m_s = roll_W / step.dt_s;
-  const double length_m = recent_W_.norm();
-  return length_m > 0 ? roll_W.dot(recent_W_) / length_m : 0;
+  const double length_m = before_W.norm();
+  return length_m > 0 ? roll_W.dot(before_W) / length_m : roll_W.norm();
 }
 
 void RollingOdometer::UpdateVariance(const AttitudeStep& step, double ds_m) {

@@ -22,10 +22,11 @@ struct RollingParams {
 /// The rotation used is that of the *corrected* attitude, R_k R_(k-1)^T, not the gyro's: gravity turns once
 /// through the body per revolution, so the accelerometer counts revolutions and neither scale factor nor bias
 /// of the spin axis leaves an error that grows with distance. What remains is r times the tilt error.
-/// With a map the chainage advances by r (rotation x n) . t / stretch and the position is the map's invert.
-/// Without a map n = up, the position is dead-reckoned in the horizontal plane, and the chainage advances by
-/// the component along the course (the direction of the last few centimetres): a ball that rolls back counts
-/// back, and noise at rest does not count.
+/// With a map the chainage advances by r (rotation x n) . t / stretch and the position is the map's invert; t
+/// is the map's tangent within three sigma of the chainage that is closest to the direction of rolling, so
+/// that a chainage a little behind does not stop the count at a bend. Without a map n = up, the position is
+/// dead-reckoned in the horizontal plane, and the chainage advances by the component along the course (the
+/// direction of the last centimetre): a ball that rolls back counts back, and noise at rest does not count.
 /// Variance of the chainage: start + (distance sd_r / r)^2 + slip + (r tilt)^2 + heading, where slip is a
 /// fraction of distance with given sd and correlation length L (variance 2 sd^2 L distance, exact for
 /// distance >> L), and a heading error psi shortens the projection by 1 - cos psi of the distance.

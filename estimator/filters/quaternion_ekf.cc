@@ -76,6 +76,7 @@ class QuaternionEkf final : public Estimator {
   void Take(const AudioBlock& block);
 
   void Start(const ImuSample& sample);
+  double MotionAccelerationSd_m_s2() const;
   void RemoveLeverArm(ImuStep& step) const;
   void AlignFromRest(const ImuStep& step);
   void HeadFromCourse();
@@ -84,6 +85,7 @@ class QuaternionEkf final : public Estimator {
   void UpdateNav(RobotTime stamp, const Quaterniond& q_WS_before, const ImuStep& step);
   void UpdateNavAttitude();
 
+  QuaternionEkfParams params_;
   EstimatorStart start_;
   Vector3d lever_S_m_;
   ImuStepper stepper_;
@@ -102,7 +104,8 @@ class QuaternionEkf final : public Estimator {
 };
 
 QuaternionEkf::QuaternionEkf(const QuaternionEkfParams& params, const EstimatorStart& start)
-    : start_(start),
+    : params_(params),
+      start_(start),
       lever_S_m_(start.X_BS.q.conjugate() * start.X_BS.p),
       attitude_(MakeAttitude(params, start)),
       rest_(params.align_s, params.attitude.gyro_noise_rad_s_sqrtHz, params.attitude.gyro_bias_sd_rad_s),
@@ -112,6 +115,9 @@ QuaternionEkf::QuaternionEkf(const QuaternionEkfParams& params, const EstimatorS
   } else {
     position_ = &inertial_.emplace(params.zero_velocity, start_);
   }
+  nav_.p_W = start_.p_W;
+  nav_.chainage_m = start_.chainage_m;
+  nav_.chainage_sd_m = start_.chainage_sd_m;
   if (start_.map) course_map_.emplace(*start_.map, start_.ball_radius_m);
 }
 
@@ -129,7 +135,8 @@ void QuaternionEkf::Take(const ImuSample& sample) {
   const Quaterniond q_WS_before = attitude_->q_WS();
   attitude_->Propagate(*step);
   RemoveLeverArm(*step);
-  attitude_->UpdateGravity(*step);
+  attitude_->UpdateGravity(*step, MotionAccelerationSd_m_s2());
+  if (inertial_ && inertial_->at_rest()) attitude_->UpdateRestRate(step->w_S_rad_s, step->dt_s);
   UpdateNav(sample.stamp, q_WS_before, *step);
   AlignFromRest(*step);
   HeadFromCourse();
@@ -140,6 +147,11 @@ void QuaternionEkf::Start(const ImuSample& sample) {
   attitude_->AlignTilt(sample.f_WS_S_m_s2);
   nav_.stamp = sample.stamp;
   started_ = true;
+}
+
+double QuaternionEkf::MotionAccelerationSd_m_s2() const {
+  if (!inertial_) return params_.attitude.motion_acceleration_sd_m_s2;
+  return inertial_->at_rest() ? 0 : params_.zero_velocity.motion_acceleration_sd_m_s2;
 }
 
 void QuaternionEkf::RemoveLeverArm(ImuStep& step) const {
@@ -193,7 +205,7 @@ void QuaternionEkf::UpdateNav(RobotTime stamp, const Quaterniond& q_WS_before, c
   attitude_step.rotation_W_rad = LogSO3(q_WS * q_WS_before.conjugate());
   attitude_step.f_W_m_s2 =
       (step.f_phase == 0 ? q_WS_before : q_WS_before.slerp(step.f_phase, q_WS)) * step.f_S_m_s2;
-  attitude_step.w_S_rad_s = attitude_->w_S_rad_s();
+  attitude_step.f_S_m_s2 = step.f_S_m_s2;
   attitude_step.tilt_variance_rad2 = std::max(covariance(0, 0), covariance(1, 1));
   attitude_step.heading_variance_rad2 = covariance(2, 2);
   position_->Step(attitude_step);

@@ -39,6 +39,7 @@ class Recent {
     ++next_;
   }
   std::size_t size() const { return std::min(next_, ring_.size()); }
+  std::size_t capacity() const { return ring_.size(); }
   bool full() const { return next_ >= ring_.size(); }
   /// Age 0 is the newest.
   const T& Back(std::size_t age) const { return ring_[(next_ - 1 - age) % ring_.size()]; }
@@ -110,7 +111,8 @@ EnvelopePeak::EnvelopePeak(const EnvelopePeakParams& params)
       raw_(std::max<std::size_t>(3, kernel_.size())),
       background_(
           std::max<std::size_t>(1, static_cast<std::size_t>(params.background_s / params.bands.frame_s))) {
-  sorted_.reserve(background_.size());
+  sorted_.reserve(background_.capacity());
+  candidates_.reserve(static_cast<std::size_t>(params.max_leaks) + 1);
 }
 
 void EnvelopePeak::Consume(const LocatedFrame& frame) {

@@ -26,14 +26,16 @@ double MeasureGain(BiquadCascade filter, double f_Hz) {
 
 /// Butterworth's magnitude through the bilinear transform.
 double ExpectedGain(double f_Hz, double corner_Hz, int order, int sign) {
-  const double ratio = std::tan(std::numbers::pi * f_Hz / kRate_Hz) / std::tan(std::numbers::pi * corner_Hz / kRate_Hz);
+  const double ratio =
+      std::tan(std::numbers::pi * f_Hz / kRate_Hz) / std::tan(std::numbers::pi * corner_Hz / kRate_Hz);
   return 1 / std::sqrt(1 + std::pow(ratio, 2 * sign * order));
 }
 
 TEST(Biquad, LowPassFollowsButterworthsMagnitude) {
   for (const int order : {2, 4}) {
     for (const double f : {100., 500., 1000., 2000., 4000.}) {
-      EXPECT_NEAR(MeasureGain(ButterworthLowPass(order, 1000, kRate_Hz), f), ExpectedGain(f, 1000, order, 1), 1e-9);
+      EXPECT_NEAR(MeasureGain(ButterworthLowPass(order, 1000, kRate_Hz), f), ExpectedGain(f, 1000, order, 1),
+                  1e-9);
     }
   }
 }
