@@ -17,12 +17,15 @@ Rate::Rate(double hertz) {
 }
 
 Duration SampleOffset(std::int64_t k, Rate rate) {
+  constexpr std::int64_t kNanoPerMicroHz = 1'000'000'000'000'000;
+  const std::int64_t period = kNanoPerMicroHz / rate.micro_Hz();
+  // most rates have a period of whole nanoseconds; the product then fits wherever the result does
+  if (period * rate.micro_Hz() == kNanoPerMicroHz) return Duration(k * period);
   __extension__ using Wide = __int128;
-  const Wide numerator = static_cast<Wide>(k) * 1'000'000'000'000'000;  // ns * micro
+  const Wide numerator = static_cast<Wide>(k) * kNanoPerMicroHz;
   const Wide denominator = rate.micro_Hz();
   const Wide half = denominator / 2;
   const Wide rounded = (numerator + (numerator >= 0 ? half : -half)) / denominator;
-  Demand(rounded == static_cast<std::int64_t>(rounded), "a sample time must fit into 64-bit nanoseconds");
   return Duration(static_cast<std::int64_t>(rounded));
 }
 
