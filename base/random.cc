@@ -33,7 +33,7 @@ std::array<std::uint64_t, 4> RandomStream::Bits(std::uint64_t sample, std::uint6
 
 std::array<double, 4> RandomStream::Uniforms(std::uint64_t sample, std::uint64_t slot) const {
   const auto bits = Bits(sample, slot);
-  std::array<double, 4> u;
+  std::array<double, 4> u{};
   // the centres of 2^52 equal cells, all exact in a double: never 0, never 1, symmetric about 1/2
   for (std::size_t i = 0; i < 4; ++i) u[i] = (static_cast<double>(bits[i] >> 12) + 0.5) * 0x1p-52;
   return u;
@@ -41,7 +41,7 @@ std::array<double, 4> RandomStream::Uniforms(std::uint64_t sample, std::uint64_t
 
 std::array<double, 4> RandomStream::Normals(std::uint64_t sample, std::uint64_t slot) const {
   const auto u = Uniforms(sample, slot);
-  std::array<double, 4> n;
+  std::array<double, 4> n{};
   for (std::size_t i = 0; i < 4; i += 2) {
     const double radius = std::sqrt(-2 * std::log(u[i]));
     const double angle = 2 * std::numbers::pi * u[i + 1];
