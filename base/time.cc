@@ -19,13 +19,17 @@ Rate::Rate(double hertz) {
 Duration SampleOffset(std::int64_t k, Rate rate) {
   constexpr std::int64_t kNanoPerMicroHz = 1'000'000'000'000'000;
   const std::int64_t period = kNanoPerMicroHz / rate.micro_Hz();
-  // most rates have a period of whole nanoseconds; the product then fits wherever the result does
-  if (period * rate.micro_Hz() == kNanoPerMicroHz) return Duration(k * period);
+  std::int64_t whole = 0;
+  // most rates have a period of whole nanoseconds and need no 128-bit division
+  if (period * rate.micro_Hz() == kNanoPerMicroHz && !__builtin_mul_overflow(k, period, &whole)) {
+    return Duration(whole);
+  }
   __extension__ using Wide = __int128;
   const Wide numerator = static_cast<Wide>(k) * kNanoPerMicroHz;
   const Wide denominator = rate.micro_Hz();
   const Wide half = denominator / 2;
   const Wide rounded = (numerator + (numerator >= 0 ? half : -half)) / denominator;
+  Demand(rounded == static_cast<std::int64_t>(rounded), "a sample time must fit into 64-bit nanoseconds");
   return Duration(static_cast<std::int64_t>(rounded));
 }
 
