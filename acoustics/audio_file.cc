@@ -174,7 +174,7 @@ class AudioWriter::Impl {
   std::unique_ptr<File> file_;  // outlives sndfile_, which writes to it until it is closed
   SndfilePtr sndfile_;
   std::int64_t frames_ = 0;
-  Chunk chunk_;
+  Chunk chunk_{};
 };
 
 AudioWriter::AudioWriter(const std::filesystem::path& path, const AudioFormat& format,

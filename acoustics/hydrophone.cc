@@ -90,7 +90,7 @@ class Hydrophone::Impl {
   std::int64_t clipped_samples_ = 0;
 };
 
-Hydrophone::Hydrophone(const HydrophoneParams& params, AcousticScene scene, const RandomStream& random)
+Hydrophone::Hydrophone(const HydrophoneParams& params, const AcousticScene& scene, const RandomStream& random)
     : impl_(std::make_unique<Impl>(params, scene, random)) {}
 Hydrophone::~Hydrophone() = default;
 Hydrophone::Hydrophone(Hydrophone&&) noexcept = default;

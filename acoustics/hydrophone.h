@@ -58,7 +58,7 @@ class Hydrophone {
   using ListenerAt = std::function<ListenerState(TrueTime)>;
 
   /// Parameters within the ranges of their Visit. Throws as HydrophoneParams::Check does.
-  Hydrophone(const HydrophoneParams& params, AcousticScene scene, const RandomStream& random);
+  Hydrophone(const HydrophoneParams& params, const AcousticScene& scene, const RandomStream& random);
   ~Hydrophone();
   Hydrophone(Hydrophone&&) noexcept;
 
