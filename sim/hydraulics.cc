@@ -180,34 +180,32 @@ std::vector<FlowReach> SolveLeg(const Problem& problem, const RouteLeg& leg, Str
   return reaches;
 }
 
-/// Pipes beside the route stand still, under the head of the route's node they hang on.
+/// Still water under an unknown head in every pipe.
+FlowState MakeStillState(const Network& network) {
+  FlowState state;
+  for (const Pipe& pipe : network.pipes()) {
+    state.pipes.push_back(
+        {{.s_end_m = pipe.length_m, .head_begin_m = kUnknownHead, .head_end_m = kUnknownHead}});
+  }
+  return state;
+}
+
+/// Water in pipes beside the route stands still under the head of the route's node they hang on.
 void FillSidePipes(const Network& network, const Route& route, FlowState& state) {
-  std::vector<double> head(network.nodes().size(), kUnknownHead);
-  std::deque<int> open;
-  const auto reach_node = [&](int node, double head_m) {
-    if (!std::isnan(head[static_cast<std::size_t>(node)])) return;
-    head[static_cast<std::size_t>(node)] = head_m;
-    open.push_back(node);
-  };
+  std::deque<std::pair<int, double>> open;  // nodes and their heads
   for (const RouteLeg& leg : route.legs()) {
     const auto& reaches = state.pipes[static_cast<std::size_t>(leg.pipe)];
-    reach_node(network.pipe(leg.pipe).from, reaches.front().head_begin_m);
-    reach_node(network.pipe(leg.pipe).to, reaches.back().head_end_m);
-  }
-  for (std::size_t p = 0; p < state.pipes.size(); ++p) {
-    if (state.pipes[p].empty()) {
-      state.pipes[p] = {
-          {.s_end_m = network.pipes()[p].length_m, .head_begin_m = kUnknownHead, .head_end_m = kUnknownHead}};
-    }
+    open.emplace_back(network.pipe(leg.pipe).from, reaches.front().head_begin_m);
+    open.emplace_back(network.pipe(leg.pipe).to, reaches.back().head_end_m);
   }
   for (; !open.empty(); open.pop_front()) {
-    const double head_m = head[static_cast<std::size_t>(open.front())];
-    for (const int p : network.PipesAt(open.front())) {
+    const auto [node, head_m] = open.front();
+    for (const int p : network.PipesAt(node)) {
       FlowReach& reach = state.pipes[static_cast<std::size_t>(p)].front();
       if (!std::isnan(reach.head_begin_m)) continue;
       reach.head_begin_m = reach.head_end_m = head_m;
-      reach_node(network.pipe(p).from, head_m);
-      reach_node(network.pipe(p).to, head_m);
+      open.emplace_back(network.pipe(p).from, head_m);
+      open.emplace_back(network.pipe(p).to, head_m);
     }
   }
 }
@@ -221,8 +219,7 @@ SteadyFlow SolveSteadyFlow(const Network& network, const Route& route, const Inl
   RequireRoute(problem, route);
   for (std::size_t i = 0; i < leaks.size(); ++i) RequireLeak(problem, route, i);
 
-  FlowState state;
-  state.pipes.resize(network.pipes().size());
+  FlowState state = MakeStillState(network);
   std::vector<LeakState> leak_states(leaks.size());
   const double inlet_elevation = route.pieces().front().line.p_begin_W.z();
   Stream stream{inlet.flow_m3_s, inlet_elevation + inlet.pressure_Pa / (water.density_kg_m3 * gravity_m_s2)};

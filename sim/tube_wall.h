@@ -28,7 +28,8 @@ class TubeWall {
   const Pose& X_WF(std::size_t piece) const { return pieces_[piece].X_WF; }
   const Pose& X_FW(std::size_t piece) const { return pieces_[piece].X_FW; }
 
-  /// Contact of a sphere at p_F, moving with v_F, over the coming step dt (facts: position-level, "SHAKE"):
+  /// Contact of a sphere at p_F, moving with v_F, over the coming step dt, as a constraint on positions (like
+  /// SHAKE):
   ///
   ///   v_t = v - n (v . n),  p' = p + v_t dt,  gap = R - r - |offset of p' from the axis|
   ///

@@ -9,7 +9,7 @@ namespace piperun::sim {
 namespace {
 
 TEST(Drag, BrownAndLawlerMatchesTheTable) {
-  // columns: Re, C_D (facts table of the correlation, four decimals or five digits)
+  // Re and the correlation's value, rounded to four decimals (the first to three)
   constexpr double kTable[][2] = {{1, 27.600},   {10, 4.1275},  {100, 1.0731}, {1e3, 0.4634},
                                   {1e4, 0.4106}, {1e5, 0.4661}, {2e5, 0.4635}, {3e5, 0.4600}};
   for (const auto& [re, cd] : kTable) EXPECT_NEAR(CalcDragCoefficient(re), cd, re == 1 ? 5e-4 : 5.1e-5) << re;

@@ -59,7 +59,7 @@ TEST(FluidLoad, SphereInATubeSettlesBetweenTheIndependentCorrelations) {
       return CalcFluidLoad(Coefficients(0.03 / l), {0, 0, -f * v_t}, Vector3d::Zero(), {}).Force_W_N().z();
     };
     EXPECT_LT(excess(std::min(munroe, di_felice)), 0) << l;  // still gaining speed
-    EXPECT_GT(excess(newton), 0) << l;
+    EXPECT_GT(excess(1.015 * newton), 0) << l;  // Kehlenbeck and Di Felice equal Newton within 1.5 %
   }
 }
 
