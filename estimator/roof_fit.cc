@@ -11,9 +11,10 @@ constexpr double kFitted = 5;  // x0, A, c, d and the choice of template
 
 template <class F>
 void ForEachBin(const BinRange& bins, F&& f) {
+  const auto channel = static_cast<std::size_t>(bins.channel);
   for (std::int64_t i = bins.first; i <= bins.last; ++i) {
     const ProfileBin& bin = bins.profile->At(i);
-    if (bin.weight > 0) f(bin, std::min(bin.weight, BinRange::kMaxWeight));
+    if (bin.weight > 0) f(bin.chainage_m, bin.levels_dB[channel], std::min(bin.weight, BinRange::kMaxWeight));
   }
 }
 
@@ -31,11 +32,11 @@ RoofFit FitRoof(const BinRange& bins, double x0_m, const Roof& roof) {
   // normal equations of the basis (1, u, m), u = x - x0
   Matrix3d N = Matrix3d::Zero();
   Vector3d r = Vector3d::Zero();
-  ForEachBin(bins, [&](const ProfileBin& bin, double w) {
-    const double u = bin.chainage_m - x0_m;
+  ForEachBin(bins, [&](double chainage_m, double level_dB, double w) {
+    const double u = chainage_m - x0_m;
     const Vector3d basis(1, u, roof.Level_dB(u));
     N += w * basis * basis.transpose();
-    r += w * bin.level_dB * basis;
+    r += w * level_dB * basis;
   });
   const double det = N(0, 0) * N(1, 1) - N(0, 1) * N(0, 1);
   if (!(det > 0)) return {};
@@ -57,10 +58,10 @@ RoofFit FitRoof(const BinRange& bins, double x0_m, const Roof& roof) {
 
 FitQuality CalcQuality(const BinRange& bins, double x0_m, const Roof& roof, const RoofFit& fit) {
   double squares = 0, products = 0, before = 0, n = 0;
-  ForEachBin(bins, [&](const ProfileBin& bin, double w) {
-    const double u = bin.chainage_m - x0_m;
+  ForEachBin(bins, [&](double chainage_m, double level_dB, double w) {
+    const double u = chainage_m - x0_m;
     const double expected = fit.trough_dB + fit.trend_dB_m * u + fit.amplitude * roof.Level_dB(u);
-    const double residual = std::sqrt(w) * (bin.level_dB - expected);
+    const double residual = std::sqrt(w) * (level_dB - expected);
     squares += residual * residual;
     products += residual * before;
     before = residual;

@@ -43,13 +43,14 @@ struct FitQuality {
   double z = 0;             ///< significance of the roof as a standard normal deviate
 };
 
-/// The bins from first to last (inclusive); empty ones are skipped. At most kMaxWeight frames count per bin,
-/// so that a ball lying still does not drown the rest.
+/// One channel of the bins from first to last (inclusive); empty ones are skipped. At most kMaxWeight frames
+/// count per bin, so that a ball lying still does not drown the rest.
 struct BinRange {
   static constexpr double kMaxWeight = 10;
   const SoundProfile* profile = nullptr;
   std::int64_t first = 0;
   std::int64_t last = 0;
+  Channel channel = Channel::kRatio;
 };
 
 RoofFit FitRoof(const BinRange& bins, double x0_m, const Roof& roof);

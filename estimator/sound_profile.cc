@@ -12,7 +12,7 @@ std::int64_t SoundProfile::IndexOf(double chainage_m) const {
   return static_cast<std::int64_t>(std::floor(chainage_m / bin_m_));
 }
 
-void SoundProfile::Add(const TrackPoint& ball, double level_dB) {
+void SoundProfile::Add(const TrackPoint& ball, const SoundLevels& levels_dB) {
   const std::int64_t i = IndexOf(ball.chainage_m);
   if (empty()) {
     first_ = i;
@@ -28,7 +28,9 @@ void SoundProfile::Add(const TrackPoint& ball, double level_dB) {
   const double share = 1 / bin.weight;
   bin.chainage_m += share * (ball.chainage_m - bin.chainage_m);
   bin.chainage_sd_m += share * (ball.chainage_sd_m - bin.chainage_sd_m);
-  bin.level_dB += share * (level_dB - bin.level_dB);
+  for (std::size_t c = 0; c < levels_dB.size(); ++c) {
+    bin.levels_dB[c] += share * (levels_dB[c] - bin.levels_dB[c]);
+  }
   bin.time_s += share * (Seconds(ball.time) - bin.time_s);
   bin.p_W += share * (ball.p_W - bin.p_W);
 }

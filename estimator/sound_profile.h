@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -7,12 +8,16 @@
 
 namespace piperun::estimator {
 
+/// Levels of one frame: of the band over the reference band, and of the band alone.
+using SoundLevels = std::array<double, 2>;
+enum class Channel : std::size_t { kRatio, kBand };
+
 /// All frames heard within one short stretch of chainage, averaged.
 struct ProfileBin {
   double weight = 0;  ///< frames; 0: none was heard here
   double chainage_m = 0;
   double chainage_sd_m = 0;
-  double level_dB = 0;
+  SoundLevels levels_dB{};
   double time_s = 0;  ///< since the robot clock's origin
   Vector3d p_W = Vector3d::Zero();
 };
@@ -23,7 +28,7 @@ class SoundProfile {
  public:
   SoundProfile(double bin_m, double length_m);
 
-  void Add(const TrackPoint& ball, double level_dB);
+  void Add(const TrackPoint& ball, const SoundLevels& levels_dB);
   bool empty() const { return last_ < first_; }
   std::int64_t first() const { return first_; }
   std::int64_t last() const { return last_; }

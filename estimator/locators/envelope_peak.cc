@@ -96,7 +96,8 @@ class EnvelopePeak final : public FrameLocator {
   Smoothed last_[3];  // the latest three smoothed values
   std::size_t smoothed_ = 0;
   bool in_peak_ = false;
-  Smoothed around_[3];  // the peak and its neighbours
+  double valley_Pa_ = 0;  // lowest envelope since the last peak
+  Smoothed around_[3];    // the peak and its neighbours
   bool await_after_ = false;
   double floor_Pa_ = 0;   // background when the peak began
   double noise_Pa2_ = 0;  // running mean square of the second difference of frames / 6
@@ -140,7 +141,9 @@ void EnvelopePeak::Follow(const Smoothed& now) {
   }
   if (!in_peak_) {
     const double floor_Pa = Background_Pa();
+    valley_Pa_ = std::min(valley_Pa_, now.envelope_Pa);
     if (now.envelope_Pa < floor_Pa * std::pow(10, params_.threshold_dB / 20)) return;
+    if (now.envelope_Pa * kRelease < valley_Pa_) return;  // still on the flank of the peak before
     in_peak_ = true;
     floor_Pa_ = floor_Pa;
     around_[1].envelope_Pa = 0;
@@ -184,6 +187,7 @@ LeakEstimate EnvelopePeak::MakeEstimate() const {
 
 void EnvelopePeak::TakePeak() {
   in_peak_ = false;
+  valley_Pa_ = last_[2].envelope_Pa;
   await_after_ = false;
   candidates_.push_back({around_[1].envelope_Pa / floor_Pa_, MakeEstimate()});
   std::sort(candidates_.begin(), candidates_.end(),

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -11,10 +12,11 @@
 namespace piperun::estimator::locators::matched_filter {
 namespace {
 
-constexpr double kWindow_dB = 12;  // a window reaches as far as the flattest roof falls by this
-constexpr double kBin_dB = 0.3;    // and a bin as far as the steepest one does
-constexpr double kApart_dB = 6;    // leaks closer together than this, on the flattest roof, are one
-constexpr double kMinZ = 3;        // below this a peak is not worth remembering
+constexpr double kWindow_dB = 12;     // a window reaches as far as the flattest roof falls by this
+constexpr double kBin_dB = 0.3;       // and a bin as far as the steepest one does
+constexpr double kApart_dB = 6;       // leaks closer together than this, on the flattest roof, are one
+constexpr double kRefineShare = 0.4;  // of the window: the top of the roof, where the leak drowns all else
+constexpr double kMinZ = 3;           // below this a peak is not worth remembering
 constexpr double kMaxReach_m = 200;
 constexpr double kHampelLimit = 3.5, kHampelFloor_dB = 1.5;
 constexpr double kPriorLeaks_per_km = 1;
@@ -56,6 +58,17 @@ std::vector<double> ChooseSlopes(const MatchedFilterParams& params, const Estima
   return {0.35 * *nominal_dB_m, 0.6 * *nominal_dB_m, *nominal_dB_m};
 }
 
+struct Heard {
+  TrackPoint ball;
+  SoundLevels levels_dB{};
+};
+
+/// Where a roof fits best, to a fraction of a bin.
+struct Place {
+  double chainage_m = 0;
+  double variance_m2 = std::numeric_limits<double>::infinity();
+};
+
 /// A place where some roof fits better than anywhere near.
 struct Peak {
   std::int64_t bin = 0;
@@ -67,7 +80,11 @@ struct Peak {
 /// the band over the reference band, together with a constant and a trend (which cancels a background that
 /// drifts linearly). The statistic is the fit's significance z, whose noise is estimated from its own
 /// residuals and their correlation. Local maxima of z above the threshold become leaks; each is then fitted
-/// again on a window that stops short of its neighbours, and its place refined between bins.
+/// again on the top of its roof, on a window that stops short of its neighbours: once to the ratio of the
+/// bands and once to the band alone, which is steeper and less noisy where the leak drowns the background.
+/// The fit with the smaller variance gives the place; its sigma is that and the track's own. confidence:
+/// lambda / (lambda + f), where f is the density of false alarms of at least this z in quiet pipe and lambda,
+/// one per km, the density of leaks expected: the probability that this is a leak.
 class MatchedFilter final : public FrameLocator {
  public:
   MatchedFilter(const MatchedFilterParams& params, const EstimatorStart& start);
@@ -78,8 +95,8 @@ class MatchedFilter final : public FrameLocator {
   void ScanUpTo(std::int64_t bin);
   Peak Score(std::int64_t bin) const;
   void ReportSettled(std::int64_t up_to_bin);
-  void Refine(const Peak& peak, double reach_m);
-  double Reduction(const BinRange& bins, double x0_m, std::size_t roof) const;
+  Place Refine(const Peak& peak, const BinRange& bins) const;
+  void ReportPeak(const Peak& peak, double reach_m);
   BinRange Window(std::int64_t bin, double reach_m) const;
   double FalseAlarms_per_km(double z) const { return trials_per_km_ * CalcNormalTail(z); }
 
@@ -91,7 +108,7 @@ class MatchedFilter final : public FrameLocator {
   double trials_per_km_;
   std::vector<Roof> roofs_;
   SoundProfile profile_;
-  ImpactGate<LocatedFrame> gate_{kHampelLimit, kHampelFloor_dB};
+  ImpactGate<Heard> gate_{kHampelLimit, kHampelFloor_dB};
   std::optional<std::int64_t> next_scan_;
   std::vector<Peak> peaks_;  // of the last stretch, not yet reported, in order of bin
   std::optional<std::int64_t> last_reported_;
@@ -119,13 +136,12 @@ MatchedFilter::MatchedFilter(const MatchedFilterParams& params, const EstimatorS
 }
 
 void MatchedFilter::Consume(const LocatedFrame& frame) {
-  const double level_dB = 10 * (std::log10(frame.sound.power_Pa2) -
-                                params_.reference_weight * std::log10(frame.sound.reference_power_Pa2));
-  LocatedFrame levelled = frame;
-  levelled.sound.power_Pa2 = level_dB;
-  const auto passed = gate_.Step(levelled, level_dB);
+  const double band_dB = 10 * std::log10(frame.sound.power_Pa2);
+  const double reference_dB = 10 * std::log10(frame.sound.reference_power_Pa2);
+  const Heard heard{frame.ball, {band_dB - params_.reference_weight * reference_dB, band_dB}};
+  const auto passed = gate_.Step(heard, heard.levels_dB[0]);
   if (!passed) return;
-  profile_.Add(passed->ball, passed->sound.power_Pa2);
+  profile_.Add(passed->ball, passed->levels_dB);
   ScanUpTo(profile_.last() - reach_bins_ - 1);
   ReportSettled(profile_.last() - 3 * reach_bins_);
 }
@@ -141,10 +157,6 @@ BinRange MatchedFilter::Window(std::int64_t bin, double reach_m) const {
   return {&profile_, std::max(profile_.first(), bin - reach), std::min(profile_.last(), bin + reach)};
 }
 
-double MatchedFilter::Reduction(const BinRange& bins, double x0_m, std::size_t roof) const {
-  return FitRoof(bins, x0_m, roofs_[roof]).reduction_dB2;
-}
-
 Peak MatchedFilter::Score(std::int64_t bin) const {
   const double x0_m = profile_.Centre_m(bin);
   const BinRange bins = Window(bin, reach_m_);
@@ -153,7 +165,7 @@ Peak MatchedFilter::Score(std::int64_t bin) const {
   if (bin - bins.first < apart_bins_ || bins.last - bin < apart_bins_) return peak;
   double best = 0;
   for (std::size_t i = 0; i < roofs_.size(); ++i) {
-    const double reduction = Reduction(bins, x0_m, i);
+    const double reduction = FitRoof(bins, x0_m, roofs_[i]).reduction_dB2;
     if (reduction > best) {
       best = reduction;
       peak.roof = i;
@@ -182,7 +194,7 @@ void MatchedFilter::ScanUpTo(std::int64_t bin) {
 void MatchedFilter::ReportSettled(std::int64_t up_to_bin) {
   while (!peaks_.empty() && peaks_.front().bin <= up_to_bin) {
     const Peak peak = peaks_.front();
-    double reach_m = reach_m_;
+    double reach_m = kRefineShare * reach_m_;
     const auto stop_short_of = [&](std::int64_t neighbour) {
       const auto distance = static_cast<double>(std::abs(neighbour - peak.bin));
       reach_m = std::min(reach_m, 0.45 * distance * profile_.bin_m());
@@ -190,32 +202,44 @@ void MatchedFilter::ReportSettled(std::int64_t up_to_bin) {
     if (last_reported_) stop_short_of(*last_reported_);
     if (peaks_.size() > 1) stop_short_of(peaks_[1].bin);
     if (FalseAlarms_per_km(peak.z) <= params_.false_alarms_per_km) {
-      Refine(peak, reach_m);
+      ReportPeak(peak, reach_m);
       last_reported_ = peak.bin;
     }
     peaks_.erase(peaks_.begin());
   }
 }
 
-void MatchedFilter::Refine(const Peak& peak, double reach_m) {
-  const BinRange bins = Window(peak.bin, reach_m);
-  const double h_m = 0.5 * profile_.bin_m() * static_cast<double>(apart_bins_) / 2;
-  double x_m = profile_.Centre_m(peak.bin);
+Place MatchedFilter::Refine(const Peak& peak, const BinRange& bins) const {
+  const Roof& roof = roofs_[peak.roof];
+  const double h_m = 0.25 * profile_.bin_m() * static_cast<double>(apart_bins_);
+  const auto reduction = [&](double x_m) { return FitRoof(bins, x_m, roof).reduction_dB2; };
+  Place place{profile_.Centre_m(peak.bin)};
   double curvature = 0;
   for (int iteration = 0; iteration < 3; ++iteration) {
-    const double before = Reduction(bins, x_m - h_m, peak.roof), here = Reduction(bins, x_m, peak.roof),
-                 after = Reduction(bins, x_m + h_m, peak.roof);
+    const double x_m = place.chainage_m;
+    const double before = reduction(x_m - h_m), here = reduction(x_m), after = reduction(x_m + h_m);
     curvature = (2 * here - before - after) / (h_m * h_m);
-    if (!(curvature > 0)) return;
-    x_m += std::clamp(0.5 * (after - before) / (curvature * h_m), -h_m, h_m);
+    if (!(curvature > 0)) return place;
+    place.chainage_m += std::clamp(0.5 * (after - before) / (curvature * h_m), -h_m, h_m);
   }
-  const RoofFit fit = FitRoof(bins, x_m, roofs_[peak.roof]);
-  const double variance = CalcQuality(bins, x_m, roofs_[peak.roof], fit).variance_dB2;
-  const TrackPoint place = profile_.Interpolate(x_m);
+  const RoofFit fit = FitRoof(bins, place.chainage_m, roof);
+  // the sum of squares grows by curvature / 2 dx^2 away from its minimum: variance = 2 sigma^2 / curvature
+  place.variance_m2 = 2 * CalcQuality(bins, place.chainage_m, roof, fit).variance_dB2 / curvature;
+  return place;
+}
+
+void MatchedFilter::ReportPeak(const Peak& peak, double reach_m) {
+  BinRange bins = Window(peak.bin, reach_m);
+  Place best = Refine(peak, bins);
+  bins.channel = Channel::kBand;
+  const Place by_band = Refine(peak, bins);
+  if (by_band.variance_m2 < best.variance_m2) best = by_band;
+  if (!std::isfinite(best.variance_m2)) return;
+  const TrackPoint place = profile_.Interpolate(best.chainage_m);
   LeakEstimate leak;
   leak.t_cpa = place.time;
-  leak.chainage_m = x_m;
-  leak.sigma_m = std::sqrt(2 * variance / curvature + place.chainage_sd_m * place.chainage_sd_m);
+  leak.chainage_m = best.chainage_m;
+  leak.sigma_m = std::sqrt(best.variance_m2 + place.chainage_sd_m * place.chainage_sd_m);
   leak.p_W = place.p_W;
   leak.confidence = kPriorLeaks_per_km / (kPriorLeaks_per_km + FalseAlarms_per_km(peak.z));
   Report(leak);

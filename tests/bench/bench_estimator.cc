@@ -1,0 +1,104 @@
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "base/random.h"
+#include "estimator/filter_kind.h"
+#include "estimator/leak_locator.h"
+
+namespace piperun::estimator {
+namespace {
+
+constexpr double kRate_Hz = 400;
+constexpr double kAudioRate_Hz = 16000;
+constexpr std::size_t kBlock = 1600;
+constexpr double kSpin_rad_s = 12;  // 0.36 m/s on 30 mm
+
+/// Turns off the locator of a filter, so that navigation is timed alone.
+class NoLocator : public ParamVisitor {
+ public:
+  void Number(const ParamInfo&, const Range&, double&) override {}
+  void NumberOr(const ParamInfo&, const Range&, std::string_view, std::optional<double>&) override {}
+  void Integer(const ParamInfo&, std::int64_t, std::int64_t, std::int64_t&) override {}
+  void Flag(const ParamInfo&, bool&) override {}
+  void Text(const ParamInfo&, std::string&) override {}
+  void Choice(const ParamInfo& info, std::span<const std::string_view> allowed, std::string& value) override {
+    if (info.name == "kind" && allowed.front() == "none") value = "none";
+  }
+  void Array(const ParamInfo&, const Range&, std::span<double>) override {}
+  void Table(const ParamInfo&, const Range&, std::size_t, std::vector<double>&) override {}
+  void Group(const ParamInfo&, const std::function<void(ParamVisitor&)>& visit) override { visit(*this); }
+  void List(const ParamInfo&, ParamList&) override {}
+  void Map(const ParamInfo&, ParamMap&) override {}
+};
+
+EstimatorStart MakeStart() {
+  PipeSpec pipe;
+  pipe.id = "P1";
+  pipe.from = "A";
+  pipe.to = "B";
+  pipe.diameter_m = 0.15;
+  pipe.wall_thickness_m = 0.0075;
+  pipe.material = {"pvc_u", 3.5e9, 0.05, 0.4, 1400, 1.5e-6};
+  Network network({{"A", {0, 0, 0}}, {"B", {1e6, 0, 0}}}, {pipe});
+  Route route(network, {{0, false}});
+  EstimatorStart start;
+  start.map.emplace(RouteMap{std::move(network), std::move(route)});
+  start.field_W_T = {2.6e-6, 25.1e-6, -40.4e-6};
+  return start;
+}
+
+/// One IMU sample of a ball rolling towards x about its y axis.
+Measurement ImuAt(std::int64_t k) {
+  const double angle = kSpin_rad_s * (static_cast<double>(k) - 0.5) / kRate_Hz;
+  return {0, ImuSample{RobotTime(SampleOffset(k, Rate(kRate_Hz))),
+                       {0, kSpin_rad_s, 0},
+                       {-9.80665 * std::sin(angle), 0, 9.80665 * std::cos(angle)},
+                       std::nullopt}};
+}
+
+void BM_ImuUpdate(benchmark::State& state, const FilterKind& kind) {
+  const auto params = kind.make_params();
+  NoLocator off;
+  params->Visit(off);
+  const auto filter = kind.make(*params, MakeStart());
+  std::int64_t k = 0;
+  for (auto _ : state) filter->Ingest(ImuAt(++k));
+  benchmark::DoNotOptimize(filter->nav().chainage_m);
+}
+
+void BM_AudioBlock(benchmark::State& state, const LocatorKind& kind) {
+  const auto params = kind.make_params();
+  const auto locator = kind.make(*params, MakeStart());
+  const RandomStream random(1, "hydrophone", 0);
+  std::vector<std::int32_t> counts(kBlock);
+  for (std::size_t i = 0; i < kBlock; ++i)
+    counts[i] = static_cast<std::int32_t>(random.Normals(i, 0)[0] * 1e4);
+  std::int64_t n = 0;
+  for (auto _ : state) {
+    ++n;
+    NavState nav;
+    nav.valid = true;
+    nav.stamp = RobotTime(SampleOffset(n, Rate(kAudioRate_Hz / kBlock)));
+    nav.chainage_m = 0.36 * Seconds(nav.stamp);
+    locator->IngestNav(nav);
+    locator->IngestAudio({nav.stamp, kAudioRate_Hz, 1e-6, counts});
+  }
+  state.counters["x_real_time"] =
+      benchmark::Counter(static_cast<double>(n) * kBlock / kAudioRate_Hz, benchmark::Counter::kIsRate);
+}
+
+const int kRegistered = [] {
+  for (const FilterKind& kind : FilterKinds()) {
+    benchmark::RegisterBenchmark(("ImuUpdate/" + std::string(kind.name)).c_str(), BM_ImuUpdate, kind);
+  }
+  for (const LocatorKind& kind : LocatorKinds()) {
+    benchmark::RegisterBenchmark(("AudioBlock/" + std::string(kind.name)).c_str(), BM_AudioBlock, kind);
+  }
+  return 0;
+}();
+
+}  // namespace
+}  // namespace piperun::estimator
