@@ -20,6 +20,9 @@ namespace fs = std::filesystem;
 
 /// A fresh folder per test.
 class AudioFile : public testing::Test {
+ public:
+  ~AudioFile() override { fs::remove_all(folder_); }
+
  protected:
   AudioFile() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
@@ -27,7 +30,6 @@ class AudioFile : public testing::Test {
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }
-  ~AudioFile() override { fs::remove_all(folder_); }
 
   static std::string Bytes(const fs::path& path) {
     std::ifstream in(path, std::ios::binary);

@@ -79,6 +79,7 @@ inline std::vector<double> RenderPressure(const AcousticScene& scene, const Hydr
   std::vector<std::int32_t> counts(static_cast<std::size_t>(seconds * params.rate_Hz));
   hydrophone.Render(listener, counts);
   std::vector<double> pressure_Pa;
+  pressure_Pa.reserve(counts.size());
   for (const std::int32_t c : counts) pressure_Pa.push_back(c * params.scale_Pa());
   return pressure_Pa;
 }
