@@ -1,5 +1,6 @@
 #include "scenarios/truth_recorder.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "scenarios/csv_row.h"
@@ -27,6 +28,15 @@ std::int64_t RefineApproach_ns(const sim::TruthState& closest, double leak_chain
   const double ahead_m = leak_chainage_m - closest.chainage_m;
   const bool passed = std::abs(ahead_m) < speed * step_s;
   return Nanoseconds(closest.time) + (passed ? FromSeconds(ahead_m / speed).count() : 0);
+}
+
+/// Leak over everything else between 1 and 4 kHz, or as much of that band as the hydrophone hears.
+std::optional<double> CalcSnr_dB(const Assembly& assembly, std::size_t leak,
+                                 const acoustics::HydrophoneParams* hydrophone, const sim::TruthState& ball) {
+  constexpr double kLow_Hz = 1000, kHigh_Hz = 4000;
+  if (!hydrophone || hydrophone->rate_Hz <= 2 * kLow_Hz) return std::nullopt;
+  return acoustics::CalcLeakSnr_dB(assembly.scene, leak, *hydrophone, CalcListener(ball, &*assembly.route),
+                                   kLow_Hz, std::min(kHigh_Hz, hydrophone->rate_Hz / 2));
 }
 
 void WriteLeak(OutputFile& file, const TrueLeak& leak) {
@@ -103,10 +113,7 @@ std::vector<TrueLeak> TruthRecorder::Close(const acoustics::HydrophoneParams* hy
     if (approaches_[i]) {
       const sim::TruthState& closest = *approaches_[i];
       leak.t_cpa_ns = RefineApproach_ns(closest, placed.chainage_m, assembly_.motion->rate().Period_s());
-      if (hydrophone) {
-        leak.snr_dB = acoustics::CalcLeakSnr_dB(assembly_.scene, i, *hydrophone,
-                                                CalcListener(closest, &*assembly_.route), 1000, 4000);
-      }
+      leak.snr_dB = CalcSnr_dB(assembly_, i, hydrophone, closest);
     }
     WriteLeak(file, leak);
     leaks.push_back(std::move(leak));
