@@ -1,7 +1,6 @@
 // Replay(): recorded measurements through estimators, scored with the run folder's own truth.
 
 #include <algorithm>
-#include <chrono>
 
 #include "base/check.h"
 #include "estimator/filter_kind.h"
@@ -12,7 +11,7 @@
 #include "scenarios/replay.h"
 #include "scenarios/run.h"
 #include "scenarios/run_folder.h"
-#include "scenarios/run_json.h"
+#include "scenarios/seal.h"
 #include "scenarios/truth_log.h"
 
 namespace piperun::scenarios {
@@ -49,7 +48,7 @@ std::vector<ToldEstimator> ChooseEstimators(const std::vector<ToldEstimator>& re
 }  // namespace
 
 RunResult Replay(const ReplayOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = StartWatch();
   const fs::path& from = options.run_folder;
   if (!fs::is_directory(from)) throw InputError("there is no such run folder", "", from.string());
   EstimatorInput input = LoadEstimatorInput((from / "estimator_input.yaml").string());
@@ -77,11 +76,7 @@ RunResult Replay(const ReplayOptions& options) {
   result.duration_s = Seconds(last);
   result.leaks = LoadTrueLeaks(from / "truth" / "leaks.csv");
   result.estimators = bank.Finish(result.leaks, scenario.score.match_radius_m, open_truth);
-  result.file_hashes = HashFiles(folder.staging());
-  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  result.json = WriteRunJson(result);
-  WriteTextFile(folder.staging() / "run.json", result.json);
-  folder.Commit();
+  Seal(folder, begin, result);
   return result;
 }
 

@@ -1,7 +1,6 @@
 #include "scenarios/run.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "base/check.h"
@@ -11,7 +10,7 @@
 #include "scenarios/measurement_writer.h"
 #include "scenarios/output_file.h"
 #include "scenarios/run_folder.h"
-#include "scenarios/run_json.h"
+#include "scenarios/seal.h"
 #include "scenarios/truth_log.h"
 #include "scenarios/truth_recorder.h"
 
@@ -177,7 +176,7 @@ void DescribeRoute(const Assembly& assembly, RunResult& result) {
 }  // namespace
 
 RunResult Run(const Scenario& scenario, const RunOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = StartWatch();
   const std::unique_ptr<Assembly> assembly = Assemble(scenario);
   RunFolder folder(options.out, options.force);
   RunResult result;
@@ -190,11 +189,7 @@ RunResult Run(const Scenario& scenario, const RunOptions& options) {
   result.seed = scenario.seed;
   result.run = scenario.run;
   DescribeRoute(*assembly, result);
-  result.file_hashes = HashFiles(folder.staging());
-  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  result.json = WriteRunJson(result);
-  WriteTextFile(folder.staging() / "run.json", result.json);
-  folder.Commit();
+  Seal(folder, begin, result);
   return result;
 }
 

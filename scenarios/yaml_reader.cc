@@ -9,6 +9,7 @@
 
 #include "base/check.h"
 #include "base/number.h"
+#include "scenarios/key_path.h"
 #include "scenarios/nearest_name.h"
 #include "scenarios/unit_alias.h"
 #include "scenarios/yaml_document.h"
@@ -295,32 +296,7 @@ class MapReader : public ParamVisitor {
   std::vector<std::string> known_;
 };
 
-/// One step of an override's path: a key, or an index.
-struct PathStep {
-  std::string key;
-  std::optional<std::size_t> index;
-};
-
-std::vector<PathStep> SplitPath(const std::string& path) {
-  std::vector<PathStep> steps;
-  std::stringstream parts(path);
-  for (std::string part; std::getline(parts, part, '.');) {
-    const std::size_t bracket = part.find('[');
-    if (bracket != 0) steps.push_back({part.substr(0, bracket), {}});
-    for (std::size_t open = bracket; open != std::string::npos; open = part.find('[', open + 1)) {
-      std::size_t index = 0;
-      const char* begin = part.data() + open + 1;
-      const auto [end, error] = std::from_chars(begin, part.data() + part.size(), index);
-      if (error != std::errc{} || end == part.data() + part.size() || *end != ']') {
-        throw InputError("'" + path + "' is not a key path", "--set");
-      }
-      steps.push_back({"", index});
-    }
-  }
-  return steps;
-}
-
-YAML::Node Descend(const YAML::Node& parent, const PathStep& step, const std::string& path) {
+YAML::Node Descend(const YAML::Node& parent, const KeyStep& step, const std::string& path) {
   if (step.index) {
     if (!parent.IsSequence() || *step.index >= parent.size()) throw InputError("there is no such item", path);
     return parent[*step.index];
@@ -378,7 +354,7 @@ void YamlDocument::Set(const std::string& assignment) {
   }
   value.SetTag(kOverrideTag);
   YAML::Node node = impl_->root;
-  for (const PathStep& step : SplitPath(path)) node.reset(Descend(node, step, path));
+  for (const KeyStep& step : SplitPath(path)) node.reset(Descend(node, step, path));
   node = value;
 }
 
