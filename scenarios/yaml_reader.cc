@@ -354,7 +354,7 @@ void YamlDocument::Set(const std::string& assignment) {
   }
   value.SetTag(kOverrideTag);
   YAML::Node node = impl_->root;
-  for (const KeyStep& step : SplitPath(path)) node.reset(Descend(node, step, path));
+  for (const KeyStep& step : SplitKeyPath(path)) node.reset(Descend(node, step, path));
   node = value;
 }
 
