@@ -74,7 +74,8 @@ void AttitudeEkf::PropagateCovariance(const ImuStep& step) {
   A << R_dt, R_dt * w_S_.asDiagonal();
   const Eigen::Matrix<double, 3, 6> APcc = A.lazyProduct(P_.bottomRightCorner<6, 6>());
   const Matrix3d APct = A.lazyProduct(P_.bottomLeftCorner<6, 3>());
-  P_.topLeftCorner<3, 3>() += APct + APct.transpose() + APcc.lazyProduct(A.transpose());
+  const Matrix3d growth = 2 * APct + APcc.lazyProduct(A.transpose());
+  P_.topLeftCorner<3, 3>() += 0.5 * (growth + growth.transpose());
   P_.topRightCorner<3, 6>() += APcc;
   P_.bottomLeftCorner<6, 3>() = P_.topRightCorner<3, 6>().transpose();
 
@@ -91,7 +92,7 @@ double AttitudeEkf::GravityVariance(double interval_s, double motion_sd_m_s2) co
 }
 
 void AttitudeEkf::UpdateGravity(const ImuStep& step, double motion_acceleration_sd_m_s2) {
-  const Quaterniond& q = step.f_phase == 0 ? q_WS_begin_ : q_WS_mid_;
+  const Quaterniond& q = step.f_at_begin ? q_WS_begin_ : q_WS_mid_;
   const Vector3d y = (q * step.f_S_m_s2) / g_m_s2_;
   const double z_x = y.y(), z_y = -y.x();
   const double excess = y.norm() - 1;
@@ -105,8 +106,9 @@ void AttitudeEkf::UpdateGravity(const ImuStep& step, double motion_acceleration_
 
   // the second number is what is left after the first has turned the attitude
   const double gain_yx = P_(0, 1) / (P_(0, 0) + variance);
-  UpdateComponent(0, z_x, variance);
-  UpdateComponent(1, z_y - gain_yx * z_x, variance);
+  Vector9d dx = UpdateComponent(0, z_x, variance);
+  dx += UpdateComponent(1, z_y - gain_yx * z_x, variance);
+  Correct(dx);
 }
 
 void AttitudeEkf::UpdateMagnetic(const Vector3d& m_S_T, const Vector3d& ahead_S_rad) {
@@ -129,15 +131,16 @@ void AttitudeEkf::UpdateHeading(double offset_rad, double sd_rad) {
 
 void AttitudeEkf::UpdateRestRate(const Vector3d& w_S_rad_s, double duration_s) {
   const double variance = Squared(params_.gyro_noise_rad_s_sqrtHz) / duration_s;
-  for (int i = 0; i < 3; ++i) UpdateComponent(kBias + i, w_S_rad_s[i] - bias_S_[i], variance);
+  for (int i = kBias; i < kBias + 3; ++i)
+    Correct(UpdateComponent(i, w_S_rad_s[i - kBias] - bias_S_[i - kBias], variance));
 }
 
-void AttitudeEkf::UpdateComponent(int i, double z, double variance) {
+AttitudeEkf::Vector9d AttitudeEkf::UpdateComponent(int i, double z, double variance) {
   const Vector9d Ph = P_.col(i);
   const double S = Ph[i] + variance;
   const Vector9d K = Ph / S;
   JosephUpdate(K, Ph, S);
-  Correct(K * z);
+  return K * z;
 }
 
 void AttitudeEkf::UpdateVertical(const Vector3d& h, double z, double variance) {
@@ -154,9 +157,7 @@ void AttitudeEkf::UpdateVertical(const Vector3d& h, double z, double variance) {
 void AttitudeEkf::JosephUpdate(const Vector9d& K, const Vector9d& Ph, double S) {
   // (I - K h^T) P (I - K h^T)^T + K r K^T = P - K Ph^T - Ph K^T + K S K^T
   const Vector9d half = Ph - 0.5 * S * K;
-  for (int j = 0; j < 9; ++j) {
-    for (int i = j; i < 9; ++i) P_(i, j) = P_(j, i) = P_(i, j) - K[i] * half[j] - half[i] * K[j];
-  }
+  for (int j = 0; j < 9; ++j) P_.col(j) -= half[j] * K + K[j] * half;  // symmetric to the last bit
 }
 
 void AttitudeEkf::Correct(const Vector9d& dx) {

@@ -67,8 +67,8 @@ class AttitudeEkf final : public AttitudeFilter {
   /// Of one direction component, from an interval's mean specific force.
   double GravityVariance(double interval_s, double motion_sd_m_s2) const;
   void PropagateCovariance(const ImuStep& step);
-  /// One scalar measurement of error component i.
-  void UpdateComponent(int i, double z, double variance);
+  /// One scalar measurement of error component i: updates P, returns the correction.
+  Vector9d UpdateComponent(int i, double z, double variance);
   /// One scalar measurement z = h . (dtheta) that may only turn about the vertical.
   void UpdateVertical(const Vector3d& h, double z, double variance);
   /// P after a gain K for a measurement row with P h = Ph and innovation variance S (Joseph's form).

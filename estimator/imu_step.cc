@@ -49,7 +49,7 @@ std::optional<ImuStep> ImuStepper::Step(const ImuSample& sample) {
   if (sample.increments) {
     step.dtheta_S_rad = sample.increments->dtheta_S_rad;
     step.f_S_m_s2 = sample.increments->dv_S_m_s / covered_s;
-    step.f_phase = 0;
+    step.f_at_begin = true;
   } else if (dt_before_s_ > 0 && step.missing_s == 0) {
     step.dtheta_S_rad = CalcRotationVector(before_->w_WS_S_rad_s, dt_before_s_, step.w_S_rad_s, step.dt_s);
   } else {

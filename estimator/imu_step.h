@@ -14,7 +14,8 @@ struct ImuStep {
   Vector3d dw_S_rad_s = Vector3d::Zero();    ///< its change since the interval before
   Vector3d dtheta_S_rad = Vector3d::Zero();  ///< rotation vector over the interval, biases included
   Vector3d f_S_m_s2 = Vector3d::Zero();      ///< mean specific force
-  double f_phase = 0.5;  ///< where in the interval the frame of f_S lies: 0 its beginning, 0.5 its middle
+  bool f_at_begin =
+      false;  ///< f_S is given in the frame at the beginning of the interval, else in its middle
 };
 
 /// Rotation vector over an interval of length T from the mean rates of this and the preceding interval, for a

@@ -27,39 +27,40 @@ RollingOdometer::RollingOdometer(const RollingParams& params, const EstimatorSta
   state_.p_W = start.p_W;
   state_.chainage_m = start.chainage_m;
   state_.chainage_sd_m = start.chainage_sd_m;
-  if (start.map) track_.emplace(*start.map, start.ball_radius_m);
+  if (!start.map) return;
+  track_.emplace(*start.map, start.ball_radius_m);
+  here_ = track_->Eval(start.chainage_m);
+  state_.p_W = here_.p_W;
 }
 
 void RollingOdometer::Step(const AttitudeStep& step) {
-  const double ds_m = Advance(step);
+  const Vector3d roll_W = radius_m_ * step.rotation_W_rad.cross(here_.normal_W);
+  const double ds_m = track_ ? AdvanceOnMap(roll_W) : AdvanceFreely(roll_W);
+  state_.v_W_m_s = (track_ ? ds_m * here_.stretch * here_.tangent_W : roll_W) / step.dt_s;
   state_.chainage_m += ds_m;
+  // only now, so that noise at rest does not count itself
+  recent_W_ = std::exp(-roll_W.norm() / kCourseMemory_m) * recent_W_ + roll_W;
   UpdateVariance(step, ds_m);
 }
 
-double RollingOdometer::Advance(const AttitudeStep& step) {
-  const InvertPoint here = track_ ? track_->Eval(state_.chainage_m)
-                                  : InvertPoint{state_.p_W, Vector3d::UnitX(), Vector3d::UnitZ()};
-  const Vector3d roll_W = radius_m_ * step.rotation_W_rad.cross(here.normal_W);
-  const Vector3d before_W = recent_W_;  // without this step, so that noise at rest does not count itself
-  recent_W_ = std::exp(-roll_W.norm() / kCourseMemory_m) * recent_W_ + roll_W;
-  if (track_) {
-    const double slack_m = kSlackSigmas * state_.chainage_sd_m + kSlack_m;
-    const Vector3d along_W = track_->FindTangent(state_.chainage_m, slack_m, before_W);
-    const double ds_m = roll_W.dot(along_W) / here.stretch;
-    state_.p_W = track_->Eval(state_.chainage_m + ds_m).p_W;
-    state_.v_W_m_s = (ds_m * here.stretch / step.dt_s) * here.tangent_W;
-    return ds_m;
-  }
+double RollingOdometer::AdvanceOnMap(const Vector3d& roll_W) {
+  const double slack_m = kSlackSigmas * state_.chainage_sd_m + kSlack_m;
+  const double ds_m = roll_W.dot(track_->FindTangent(state_.chainage_m, slack_m, recent_W_)) / here_.stretch;
+  here_ = track_->Eval(state_.chainage_m + ds_m);
+  state_.p_W = here_.p_W;
+  return ds_m;
+}
+
+double RollingOdometer::AdvanceFreely(const Vector3d& roll_W) {
   state_.p_W += roll_W;
-  state_.v_W_m_s = roll_W / step.dt_s;
-  const double length_m = before_W.norm();
-  return length_m > 0 ? roll_W.dot(before_W) / length_m : roll_W.norm();
+  const double length_m = recent_W_.norm();
+  return length_m > 0 ? roll_W.dot(recent_W_) / length_m : roll_W.norm();
 }
 
 void RollingOdometer::UpdateVariance(const AttitudeStep& step, double ds_m) {
   distance_m_ += ds_m;
   slip_variance_m2_ += 2 * params_.slip_sd * params_.slip_sd * params_.slip_correlation_m * std::abs(ds_m);
-  heading_loss_m_ += (1 - std::exp(-0.5 * step.heading_variance_rad2)) * ds_m;
+  if (track_) heading_loss_m_ += (1 - std::exp(-0.5 * step.heading_variance_rad2)) * ds_m;
   const double radius_m = relative_radius_sd_ * distance_m_;
   state_.chainage_sd_m =
       std::sqrt(start_variance_m2_ + radius_m * radius_m + slip_variance_m2_ +

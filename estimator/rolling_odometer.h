@@ -29,7 +29,8 @@ struct RollingParams {
 /// direction of the last centimetre): a ball that rolls back counts back, and noise at rest does not count.
 /// Variance of the chainage: start + (distance sd_r / r)^2 + slip + (r tilt)^2 + heading, where slip is a
 /// fraction of distance with given sd and correlation length L (variance 2 sd^2 L distance, exact for
-/// distance >> L), and a heading error psi shortens the projection by 1 - cos psi of the distance.
+/// distance >> L), and, with a map, a heading error psi shortens the projection by
+/// 1 - cos psi of the distance.
 class RollingOdometer final : public PositionFilter {
  public:
   /// Keeps start.map by reference.
@@ -43,13 +44,17 @@ class RollingOdometer final : public PositionFilter {
   std::optional<Vector3d> Course_W() const;
 
  private:
-  double Advance(const AttitudeStep& step);  // signed distance along the route or course
+  /// Both return the signed distance along the route or course.
+  double AdvanceOnMap(const Vector3d& roll_W);
+  double AdvanceFreely(const Vector3d& roll_W);
   void UpdateVariance(const AttitudeStep& step, double ds_m);
 
   RollingParams params_;
   double radius_m_;
   double relative_radius_sd_;
   std::optional<InvertTrack> track_;
+  /// Where the ball touches; without a map always upright.
+  InvertPoint here_{Vector3d::Zero(), Vector3d::UnitX(), Vector3d::UnitZ()};
   PositionState state_;
   Vector3d p_start_W_;
   double start_variance_m2_;

@@ -52,6 +52,13 @@ std::unique_ptr<AttitudeFilter> MakeAttitude(const QuaternionEkfParams& params, 
   return std::make_unique<AttitudeEkf>(params.attitude, start.gravity_m_s2, start.field_W_T);
 }
 
+/// Attitude of the frame that a step's specific force is given in: at its beginning or in its middle.
+Quaterniond ForceFrame(const ImuStep& step, const Quaterniond& begin, const Quaterniond& end) {
+  if (step.f_at_begin) return begin;
+  const double sign = begin.dot(end) < 0 ? -1 : 1;
+  return Quaterniond(begin.coeffs() + sign * end.coeffs()).normalized();
+}
+
 /// Quaternion EKF, a position from it, and a leak locator beside it.
 ///
 /// Alignment: tilt from the first specific force, heading from the first magnetometer sample; the filter runs
@@ -203,8 +210,7 @@ void QuaternionEkf::UpdateNav(RobotTime stamp, const Quaterniond& q_WS_before, c
   AttitudeStep attitude_step;
   attitude_step.dt_s = step.dt_s;
   attitude_step.rotation_W_rad = LogSO3(q_WS * q_WS_before.conjugate());
-  attitude_step.f_W_m_s2 =
-      (step.f_phase == 0 ? q_WS_before : q_WS_before.slerp(step.f_phase, q_WS)) * step.f_S_m_s2;
+  attitude_step.f_W_m_s2 = ForceFrame(step, q_WS_before, q_WS) * step.f_S_m_s2;
   attitude_step.f_S_m_s2 = step.f_S_m_s2;
   attitude_step.tilt_variance_rad2 = std::max(covariance(0, 0), covariance(1, 1));
   attitude_step.heading_variance_rad2 = covariance(2, 2);

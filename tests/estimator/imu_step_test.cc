@@ -59,7 +59,7 @@ TEST(ImuStep, IncrementsAreTakenAsTheyAre) {
   ASSERT_TRUE(step);
   EXPECT_EQ(step->dtheta_S_rad, Vector3d(0.01, 0.02, 0.03));
   EXPECT_LT((step->f_S_m_s2 - Vector3d(10, 20, 30)).norm(), 1e-12);
-  EXPECT_EQ(step->f_phase, 0);
+  EXPECT_TRUE(step->f_at_begin);
 }
 
 /// Rotation vector of a rate a + b t over [0, T] by ten thousand exponentials.
