@@ -23,7 +23,11 @@ TEST(DemandDeathTest, ABrokenPromiseAbortsWithItsPlace) {
                "check_test.cc:[0-9]+: broken promise: states come in order");
 }
 
-TEST(Demand, AKeptPromiseCostsNothing) { Demand(true, "never printed"); }
+TEST(Demand, AKeptPromiseIsSilent) {
+  testing::internal::CaptureStderr();
+  Demand(true, "never printed");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
 
 }  // namespace
 }  // namespace piperun
