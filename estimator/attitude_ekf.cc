@@ -8,7 +8,8 @@ namespace piperun::estimator {
 namespace {
 
 constexpr double kInitialTiltSd_rad = 0.05;
-constexpr double kExcessSigmas = 3;  // |f| - g beyond this is motion, not noise
+constexpr double kExcessSigmas = 3;     // |f| - g beyond this is motion, not noise
+constexpr double kMinHorizontal = 0.1;  // of the reference's horizontal part: less has no heading
 constexpr int kBias = 3, kScale = 6;
 
 double Squared(double x) { return x * x; }
@@ -111,18 +112,20 @@ void AttitudeEkf::UpdateGravity(const ImuStep& step, double motion_acceleration_
   Correct(dx);
 }
 
-void AttitudeEkf::UpdateMagnetic(const Vector3d& m_S_T, const Vector3d& ahead_S_rad) {
+bool AttitudeEkf::UpdateMagnetic(const Vector3d& m_S_T, const Vector3d& ahead_S_rad) {
   const Vector3d m = q_WS_ * (ExpSO3(ahead_S_rad) * m_S_T);
   const double horizontal2 = m.head<2>().squaredNorm();
   const double horizontal_ref = field_W_T_.head<2>().norm();
   const bool disturbed = std::abs(m.norm() / field_W_T_.norm() - 1) > params_.field_tolerance;
-  if (disturbed || !(horizontal2 > Squared(0.1 * horizontal_ref))) return;
+  if (disturbed || !(horizontal2 > Squared(kMinHorizontal * horizontal_ref))) return false;
   const double z = WrapAngle(std::atan2(field_W_T_.y(), field_W_T_.x()) - std::atan2(m.y(), m.x()));
   const Vector3d h(-m.z() * m.x() / horizontal2, -m.z() * m.y() / horizontal2, 1);
   const double variance = Squared(params_.magnetometer_sd_T) / horizontal2;
   const double S = h.dot(P_.topLeftCorner<3, 3>() * h) + variance;
   nis_ = Nis{z * z / S, 1};
-  if (nis_->value <= params_.nis_gate) UpdateVertical(h, z, variance);
+  if (nis_->value > params_.nis_gate) return false;
+  UpdateVertical(h, z, variance);
+  return true;
 }
 
 void AttitudeEkf::UpdateHeading(double offset_rad, double sd_rad) {
@@ -131,8 +134,7 @@ void AttitudeEkf::UpdateHeading(double offset_rad, double sd_rad) {
 
 void AttitudeEkf::UpdateRestRate(const Vector3d& w_S_rad_s, double duration_s) {
   const double variance = Squared(params_.gyro_noise_rad_s_sqrtHz) / duration_s;
-  for (int i = kBias; i < kBias + 3; ++i)
-    Correct(UpdateComponent(i, w_S_rad_s[i - kBias] - bias_S_[i - kBias], variance));
+  for (int i = 0; i < 3; ++i) Correct(UpdateComponent(kBias + i, w_S_rad_s[i] - bias_S_[i], variance));
 }
 
 AttitudeEkf::Vector9d AttitudeEkf::UpdateComponent(int i, double z, double variance) {

@@ -49,7 +49,7 @@ class AttitudeEkf final : public AttitudeFilter {
   void AlignTilt(const Vector3d& f_S_m_s2) override;
   void Propagate(const ImuStep& step) override;
   void UpdateGravity(const ImuStep& step, double motion_acceleration_sd_m_s2) override;
-  void UpdateMagnetic(const Vector3d& m_S_T, const Vector3d& ahead_S_rad) override;
+  bool UpdateMagnetic(const Vector3d& m_S_T, const Vector3d& ahead_S_rad) override;
   void UpdateHeading(double offset_rad, double sd_rad) override;
   void UpdateRestRate(const Vector3d& w_S_rad_s, double duration_s) override;
 
@@ -91,7 +91,7 @@ class AttitudeEkf final : public AttitudeFilter {
 /// Smallest rotation R with R f parallel to up: the attitude of a sensor at rest, up to its heading.
 Quaterniond CalcTilt(const Vector3d& f_S_m_s2);
 
-/// Angle wrapped into (-pi, pi].
+/// Angle wrapped into [-pi, pi].
 double WrapAngle(double angle_rad);
 
 }  // namespace piperun::estimator

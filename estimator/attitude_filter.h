@@ -23,8 +23,8 @@ class AttitudeFilter {
   /// Specific force of the step just propagated, freed of lever-arm terms, of a body whose own acceleration
   /// has the given standard deviation.
   virtual void UpdateGravity(const ImuStep& step, double motion_acceleration_sd_m_s2) = 0;
-  /// Magnetic flux density in the frame S that Exp(ahead) turns the present one into.
-  virtual void UpdateMagnetic(const Vector3d& m_S_T, const Vector3d& ahead_S_rad) = 0;
+  /// Magnetic flux density in the frame S that Exp(ahead) turns the present one into. False: not believed.
+  virtual bool UpdateMagnetic(const Vector3d& m_S_T, const Vector3d& ahead_S_rad) = 0;
   /// Heading known otherwise: the attitude should be turned by `offset_rad` about the vertical.
   virtual void UpdateHeading(double offset_rad, double sd_rad) = 0;
   /// Mean gyro reading of a sensor known to rest, over `duration_s`.

@@ -88,12 +88,13 @@ void PrintedEkf::UpdateGravity(const ImuStep& step, double motion_acceleration_s
   Update<3>(CalcUpJacobian(q_WS_), f_S_ / g_m_s2_ - CalcUp(q_WS_), sd * sd);
 }
 
-void PrintedEkf::UpdateMagnetic(const Vector3d& m_S_T, const Vector3d&) {
+bool PrintedEkf::UpdateMagnetic(const Vector3d& m_S_T, const Vector3d&) {
   Row4 H;
   const double yaw = CalcYaw(q_WS_, H);
   const double sd = params_.magnetometer_sd_T / field_W_T_.head<2>().norm();
   const Eigen::Matrix<double, 1, 1> z(WrapAngle(CalcMagneticYaw(f_S_, m_S_T, field_W_T_) - yaw));
   Update<1>(H, z, sd * sd);
+  return true;
 }
 
 template <int n>

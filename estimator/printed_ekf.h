@@ -26,7 +26,7 @@ class PrintedEkf final : public AttitudeFilter {
   void AlignTilt(const Vector3d&) override {}  // the paper starts at [1 0 0 0]
   void Propagate(const ImuStep& step) override;
   void UpdateGravity(const ImuStep& step, double motion_acceleration_sd_m_s2) override;
-  void UpdateMagnetic(const Vector3d& m_S_T, const Vector3d& ahead_S_rad) override;
+  bool UpdateMagnetic(const Vector3d& m_S_T, const Vector3d& ahead_S_rad) override;
   void UpdateHeading(double, double) override {}
   void UpdateRestRate(const Vector3d&, double) override {}
 

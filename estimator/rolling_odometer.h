@@ -16,8 +16,7 @@ struct RollingParams {
 };
 
 /// Position of a ball that rolls without slipping, from its attitude: v = w x r n = r (w x n), n the wall's
-/// normal at the contact (with n = up in
-/// the rolling-ball paper of sources B).
+/// normal at the contact (the rolling-ball paper of sources B has n = up).
 ///
 /// The rotation used is that of the *corrected* attitude, R_k R_(k-1)^T, not the gyro's: gravity turns once
 /// through the body per revolution, so the accelerometer counts revolutions and neither scale factor nor bias
@@ -29,8 +28,8 @@ struct RollingParams {
 /// direction of the last centimetre): a ball that rolls back counts back, and noise at rest does not count.
 /// Variance of the chainage: start + (distance sd_r / r)^2 + slip + (r tilt)^2 + heading, where slip is a
 /// fraction of distance with given sd and correlation length L (variance 2 sd^2 L distance, exact for
-/// distance >> L), and, with a map, a heading error psi shortens the projection by
-/// 1 - cos psi of the distance.
+/// distance >> L), and, with a map, a heading error psi shortens the projection by 1 - cos psi of the
+/// distance.
 class RollingOdometer final : public PositionFilter {
  public:
   /// Keeps start.map by reference.

@@ -63,7 +63,8 @@ Quaterniond ForceFrame(const ImuStep& step, const Quaterniond& begin, const Quat
 ///
 /// Alignment: tilt from the first specific force, heading from the first magnetometer sample; the filter runs
 /// from there with a covariance that says how little it knows. If the ball rested for `align_s`, the gyro
-/// bias is taken from that time. Without a magnetometer the heading comes from the motion: for a rolling
+/// bias is taken from that time. Where the magnetometer is missing or not believed, and the
+/// heading has become uncertain, it comes from the motion: for a rolling
 /// ball, its direction of rolling must be the map's tangent (on straights) or, without a map, the start
 /// heading during the first metre; for a carried sensor, its x axis points along the start heading. One IMU,
 /// one magnetometer and one hydrophone are listened to: the first channel of each that speaks.
@@ -188,7 +189,7 @@ std::optional<double> QuaternionEkf::KnownCourse_rad() {
 }
 
 void QuaternionEkf::HeadFromCourse() {
-  if (magnetic_ || !odometer_) return;
+  if (!odometer_) return;
   const double sd_rad = std::hypot(start_.heading_sd_rad, kCourseSd_rad);
   if (attitude_->Covariance_W_rad2()(2, 2) <= sd_rad * sd_rad) return;
   const auto course_W = odometer_->Course_W();
@@ -242,9 +243,8 @@ void QuaternionEkf::Take(const MagSample& sample) {
                      " s holds a value that is not finite; remove the row");
   }
   // a point sample: turn the attitude, which is as of the last IMU stamp, on to the sample's own
-  attitude_->UpdateMagnetic(sample.m_S_T, attitude_->w_S_rad_s() * Seconds(sample.stamp - nav_.stamp));
-  magnetic_ = true;
-  nav_.valid = true;
+  const Vector3d ahead_S_rad = attitude_->w_S_rad_s() * Seconds(sample.stamp - nav_.stamp);
+  if (attitude_->UpdateMagnetic(sample.m_S_T, ahead_S_rad)) magnetic_ = nav_.valid = true;
   UpdateNavAttitude();
 }
 

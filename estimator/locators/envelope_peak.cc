@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "estimator/frame_locator.h"
@@ -53,7 +54,7 @@ std::vector<double> HannKernel(std::size_t n) {
   std::vector<double> kernel(n);
   double sum = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    const double s = std::sin(M_PI * (static_cast<double>(i) + 0.5) / static_cast<double>(n));
+    const double s = std::sin(std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(n));
     sum += kernel[i] = s * s;
   }
   for (double& k : kernel) k /= sum;

@@ -16,7 +16,8 @@ constexpr double kWindow_dB = 12;     // a window reaches as far as the flattest
 constexpr double kBin_dB = 0.3;       // and a bin as far as the steepest one does
 constexpr double kApart_dB = 6;       // leaks closer together than this, on the flattest roof, are one
 constexpr double kRefineShare = 0.4;  // of the window: the top of the roof, where the leak drowns all else
-constexpr double kMinZ = 3;           // below this a peak is not worth remembering
+constexpr double kNeighbourShare = 0.45;  // of the way to the next leak
+constexpr double kMinZ = 3;               // below this a peak is not worth remembering
 constexpr double kMaxReach_m = 200;
 constexpr double kHampelLimit = 3.5, kHampelFloor_dB = 1.5;
 constexpr double kPriorLeaks_per_km = 1;
@@ -93,6 +94,9 @@ class MatchedFilter final : public FrameLocator {
   void Consume(const LocatedFrame& frame) override;
   void Complete() override;
   void ScanUpTo(std::int64_t bin);
+  /// Remembers the place kept back by apart_bins_ if nothing within that distance scored as high.
+  void KeepMaximum(const Peak& scored);
+  bool IsLeak(const Peak& peak) const;
   Peak Score(std::int64_t bin) const;
   void ReportSettled(std::int64_t up_to_bin);
   Place Refine(const Peak& peak, const BinRange& bins) const;
@@ -110,6 +114,8 @@ class MatchedFilter final : public FrameLocator {
   SoundProfile profile_;
   ImpactGate<Heard> gate_{kHampelLimit, kHampelFloor_dB};
   std::optional<std::int64_t> next_scan_;
+  std::vector<Peak> scored_;  // ring: the last places, twice apart_bins_ and one
+  std::size_t next_scored_ = 0;
   std::vector<Peak> peaks_;  // of the last stretch, not yet reported, in order of bin
   std::optional<std::int64_t> last_reported_;
 };
@@ -132,6 +138,7 @@ MatchedFilter::MatchedFilter(const MatchedFilterParams& params, const EstimatorS
   }
   // places a decibel's fall apart are told apart by the steepest roof
   trials_per_km_ = 1000 * slopes_dB_m_.back() / 4.34 * static_cast<double>(roofs_.size());
+  scored_.resize(2 * static_cast<std::size_t>(apart_bins_) + 1);
   peaks_.reserve(64);
 }
 
@@ -143,12 +150,13 @@ void MatchedFilter::Consume(const LocatedFrame& frame) {
   if (!passed) return;
   profile_.Add(passed->ball, passed->levels_dB);
   ScanUpTo(profile_.last() - reach_bins_ - 1);
-  ReportSettled(profile_.last() - 3 * reach_bins_);
+  ReportSettled(profile_.last() - 3 * reach_bins_ - 2 * apart_bins_);
 }
 
 void MatchedFilter::Complete() {
   if (profile_.empty()) return;
   ScanUpTo(profile_.last());
+  for (std::int64_t i = 0; i < apart_bins_; ++i) KeepMaximum({});  // flush
   ReportSettled(profile_.last());
 }
 
@@ -179,33 +187,37 @@ Peak MatchedFilter::Score(std::int64_t bin) const {
 
 void MatchedFilter::ScanUpTo(std::int64_t bin) {
   if (!next_scan_) next_scan_ = profile_.first();
-  for (; *next_scan_ <= bin; ++*next_scan_) {
-    const Peak here = Score(*next_scan_);
-    if (here.z < kMinZ) continue;
-    // among peaks too close together the most significant stays
-    if (!peaks_.empty() && here.bin - peaks_.back().bin <= apart_bins_) {
-      if (here.z > peaks_.back().z) peaks_.back() = here;
-    } else {
-      peaks_.push_back(here);
-    }
-  }
+  for (; *next_scan_ <= bin; ++*next_scan_) KeepMaximum(Score(*next_scan_));
+}
+
+void MatchedFilter::KeepMaximum(const Peak& scored) {
+  const std::size_t n = scored_.size();
+  scored_[next_scored_++ % n] = scored;
+  if (next_scored_ < n) return;
+  const Peak& middle = scored_[(next_scored_ - 1 - n / 2) % n];
+  const auto lower = [&](const Peak& other) { return other.z < middle.z || &other == &middle; };
+  if (middle.z >= kMinZ && std::all_of(scored_.begin(), scored_.end(), lower)) peaks_.push_back(middle);
+}
+
+bool MatchedFilter::IsLeak(const Peak& peak) const {
+  return FalseAlarms_per_km(peak.z) <= params_.false_alarms_per_km;
 }
 
 void MatchedFilter::ReportSettled(std::int64_t up_to_bin) {
   while (!peaks_.empty() && peaks_.front().bin <= up_to_bin) {
     const Peak peak = peaks_.front();
+    peaks_.erase(peaks_.begin());
+    if (!IsLeak(peak)) continue;
+    const auto next = std::find_if(peaks_.begin(), peaks_.end(), [&](const Peak& p) { return IsLeak(p); });
     double reach_m = kRefineShare * reach_m_;
     const auto stop_short_of = [&](std::int64_t neighbour) {
       const auto distance = static_cast<double>(std::abs(neighbour - peak.bin));
-      reach_m = std::min(reach_m, 0.45 * distance * profile_.bin_m());
+      reach_m = std::min(reach_m, kNeighbourShare * distance * profile_.bin_m());
     };
     if (last_reported_) stop_short_of(*last_reported_);
-    if (peaks_.size() > 1) stop_short_of(peaks_[1].bin);
-    if (FalseAlarms_per_km(peak.z) <= params_.false_alarms_per_km) {
-      ReportPeak(peak, reach_m);
-      last_reported_ = peak.bin;
-    }
-    peaks_.erase(peaks_.begin());
+    if (next != peaks_.end()) stop_short_of(next->bin);
+    ReportPeak(peak, reach_m);
+    last_reported_ = peak.bin;
   }
 }
 

@@ -89,6 +89,7 @@ TEST(LeakLocator, MatchedFilterBeatsTheEnvelopeInDriftAndImpactsSlow) {
   EXPECT_EQ(matched_high.found, runs);
   EXPECT_EQ(envelope_high.found, runs);
   EXPECT_LT(Median(matched_high.errors_m), 0.03);
+  EXPECT_LT(Median(matched_high.errors_m), Median(envelope_high.errors_m));
   const Tally matched_low = Campaign("matched_filter", scene, 3, runs);
   const Tally envelope_low = Campaign("envelope_peak", scene, 3, runs);
   EXPECT_GE(matched_low.found, 18);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "base/measurement.h"
@@ -73,14 +74,14 @@ class White {
 /// One-pole low pass at 100 Hz plus a floor: about -20 dB per decade.
 struct Background {
   double pole, floor, state = 0;
-  explicit Background(double rate_Hz) : pole(std::exp(-2 * M_PI * 100 / rate_Hz)), floor(0.01) {}
+  explicit Background(double rate_Hz) : pole(std::exp(-2 * std::numbers::pi * 100 / rate_Hz)), floor(0.01) {}
   double Step(double white, double white_floor) {
     state = pole * state + (1 - pole) * white;
     return state + floor * white_floor;
   }
   /// Power spectral density over that of unit white noise.
   double Psd(double f_Hz, double rate_Hz) const {
-    const double w = 2 * M_PI * f_Hz / rate_Hz;
+    const double w = 2 * std::numbers::pi * f_Hz / rate_Hz;
     return (1 - pole) * (1 - pole) / (1 + pole * pole - 2 * pole * std::cos(w)) + floor * floor;
   }
 };
@@ -105,7 +106,8 @@ inline SoundRecord::SoundRecord(const SoundScene& scene, std::uint64_t seed) : s
   for (std::size_t i = 0; i < n; ++i) {
     const double x = scene.speed_m_s * static_cast<double>(i) / scene.rate_Hz;
     if (i % 16 == 0) {
-      level = std::pow(10, scene.drift_dB / 20 * std::sin(2 * M_PI * x / scene.drift_length_m + 1));
+      level =
+          std::pow(10, scene.drift_dB / 20 * std::sin(2 * std::numbers::pi * x / scene.drift_length_m + 1));
       burst = 0;
       if (scene.joint_spacing_m > 0) {
         const double behind_s = std::fmod(x, scene.joint_spacing_m) / scene.speed_m_s;
