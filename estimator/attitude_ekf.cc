@@ -69,15 +69,15 @@ void AttitudeEkf::Propagate(const ImuStep& step) {
 }
 
 void AttitudeEkf::PropagateCovariance(const ImuStep& step) {
-  // x = [dtheta, c], c = [db, ds]: dtheta += A c
-  const Matrix3d R_dt = -step.dt_s * q_WS_mid_.toRotationMatrix();
-  Eigen::Matrix<double, 3, 6> A;
-  A << R_dt, R_dt * w_S_.asDiagonal();
-  const Eigen::Matrix<double, 3, 6> APcc = A.lazyProduct(P_.bottomRightCorner<6, 6>());
-  const Matrix3d APct = A.lazyProduct(P_.bottomLeftCorner<6, 3>());
-  const Matrix3d growth = 2 * APct + APcc.lazyProduct(A.transpose());
+  // dtheta += A db + A diag(w) ds, A = -R dt; G: the same with the two lower rows of blocks, (db + w ds)
+  const Matrix3d A = -step.dt_s * q_WS_mid_.toRotationMatrix();
+  const Eigen::Matrix<double, 3, 9> G =
+      P_.middleRows<3>(kBias) + w_S_.asDiagonal() * P_.middleRows<3>(kScale);
+  const Eigen::Matrix<double, 3, 9> AG = A.lazyProduct(G);
+  const Matrix3d AGB = AG.middleCols<3>(kBias) + AG.middleCols<3>(kScale) * w_S_.asDiagonal();
+  const Matrix3d growth = 2 * AG.leftCols<3>() + AGB.lazyProduct(A.transpose());
   P_.topLeftCorner<3, 3>() += 0.5 * (growth + growth.transpose());
-  P_.topRightCorner<3, 6>() += APcc;
+  P_.topRightCorner<3, 6>() += AG.rightCols<6>();
   P_.bottomLeftCorner<6, 3>() = P_.topRightCorner<3, 6>().transpose();
 
   // over a gap the rate was guessed between its neighbours: uniform in between
@@ -157,9 +157,13 @@ void AttitudeEkf::UpdateVertical(const Vector3d& h, double z, double variance) {
 }
 
 void AttitudeEkf::JosephUpdate(const Vector9d& K, const Vector9d& Ph, double S) {
-  // (I - K h^T) P (I - K h^T)^T + K r K^T = P - K Ph^T - Ph K^T + K S K^T
+  // (I - K h^T) P (I - K h^T)^T + K r K^T = P - K Ph^T - Ph K^T + K S K^T, symmetric to the last bit
+  const Vector9d gain = K;
   const Vector9d half = Ph - 0.5 * S * K;
-  for (int j = 0; j < 9; ++j) P_.col(j) -= half[j] * K + K[j] * half;  // symmetric to the last bit
+  for (int j = 0; j < 9; ++j) {
+    double* column = P_.col(j).data();
+    for (int i = 0; i < 9; ++i) column[i] -= half[j] * gain[i] + gain[j] * half[i];
+  }
 }
 
 void AttitudeEkf::Correct(const Vector9d& dx) {

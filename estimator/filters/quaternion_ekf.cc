@@ -96,6 +96,7 @@ class QuaternionEkf final : public Estimator {
   QuaternionEkfParams params_;
   EstimatorStart start_;
   Vector3d lever_S_m_;
+  double course_sd_rad_;
   ImuStepper stepper_;
   std::unique_ptr<AttitudeFilter> attitude_;
   RestAlignment rest_;
@@ -115,6 +116,7 @@ QuaternionEkf::QuaternionEkf(const QuaternionEkfParams& params, const EstimatorS
     : params_(params),
       start_(start),
       lever_S_m_(start.X_BS.q.conjugate() * start.X_BS.p),
+      course_sd_rad_(std::hypot(start.heading_sd_rad, kCourseSd_rad)),
       attitude_(MakeAttitude(params, start)),
       rest_(params.align_s, params.attitude.gyro_noise_rad_s_sqrtHz, params.attitude.gyro_bias_sd_rad_s),
       locator_(params.locator.Make(start_)) {
@@ -190,12 +192,11 @@ std::optional<double> QuaternionEkf::KnownCourse_rad() {
 
 void QuaternionEkf::HeadFromCourse() {
   if (!odometer_) return;
-  const double sd_rad = std::hypot(start_.heading_sd_rad, kCourseSd_rad);
-  if (attitude_->Covariance_W_rad2()(2, 2) <= sd_rad * sd_rad) return;
+  if (nav_.attitude_covariance_rad2(2, 2) <= course_sd_rad_ * course_sd_rad_) return;
   const auto course_W = odometer_->Course_W();
   if (!course_W) return;
   if (const auto known_rad = KnownCourse_rad()) {
-    TurnTo(*known_rad, std::atan2(course_W->y(), course_W->x()), sd_rad);
+    TurnTo(*known_rad, std::atan2(course_W->y(), course_W->x()), course_sd_rad_);
   }
 }
 

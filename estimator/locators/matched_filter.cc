@@ -17,6 +17,7 @@ constexpr double kBin_dB = 0.3;       // and a bin as far as the steepest one do
 constexpr double kApart_dB = 6;       // leaks closer together than this, on the flattest roof, are one
 constexpr double kRefineShare = 0.4;  // of the window: the top of the roof, where the leak drowns all else
 constexpr double kNeighbourShare = 0.45;  // of the way to the next leak
+constexpr double kBandShare = 0.5;        // of the ratio's roof that the band alone must show
 constexpr double kMinZ = 3;               // below this a peak is not worth remembering
 constexpr double kMaxReach_m = 200;
 constexpr double kHampelLimit = 3.5, kHampelFloor_dB = 1.5;
@@ -80,7 +81,9 @@ struct Peak {
 /// Matched filter along the pipe: at every place the best of a small bank of roofs is fitted to the level of
 /// the band over the reference band, together with a constant and a trend (which cancels a background that
 /// drifts linearly). The statistic is the fit's significance z, whose noise is estimated from its own
-/// residuals and their correlation. Local maxima of z above the threshold become leaks; each is then fitted
+/// residuals and their correlation. Local maxima of z above the threshold become leaks, if the band itself
+/// rises there: the reference band carries further, so some way off a loud leak the ratio falls, and the
+/// shoulder before that looks like a roof although the band is flat. Each leak is then fitted
 /// again on the top of its roof, on a window that stops short of its neighbours: once to the ratio of the
 /// bands and once to the band alone, which is steeper and less noisy where the leak drowns the background.
 /// The fit with the smaller variance gives the place; its sigma is that and the track's own. confidence:
@@ -96,6 +99,7 @@ class MatchedFilter final : public FrameLocator {
   void ScanUpTo(std::int64_t bin);
   /// Remembers the place kept back by apart_bins_ if nothing within that distance scored as high.
   void KeepMaximum(const Peak& scored);
+  bool BandRises(const Peak& peak) const;
   bool IsLeak(const Peak& peak) const;
   Peak Score(std::int64_t bin) const;
   void ReportSettled(std::int64_t up_to_bin);
@@ -196,7 +200,16 @@ void MatchedFilter::KeepMaximum(const Peak& scored) {
   if (next_scored_ < n) return;
   const Peak& middle = scored_[(next_scored_ - 1 - n / 2) % n];
   const auto lower = [&](const Peak& other) { return other.z < middle.z || &other == &middle; };
-  if (middle.z >= kMinZ && std::all_of(scored_.begin(), scored_.end(), lower)) peaks_.push_back(middle);
+  if (middle.z < kMinZ || !std::all_of(scored_.begin(), scored_.end(), lower)) return;
+  if (BandRises(middle)) peaks_.push_back(middle);
+}
+
+bool MatchedFilter::BandRises(const Peak& peak) const {
+  BinRange bins = Window(peak.bin, reach_m_);
+  const double x0_m = profile_.Centre_m(peak.bin);
+  const double ratio = FitRoof(bins, x0_m, roofs_[peak.roof]).amplitude;
+  bins.channel = Channel::kBand;
+  return FitRoof(bins, x0_m, roofs_[peak.roof]).amplitude >= kBandShare * ratio;
 }
 
 bool MatchedFilter::IsLeak(const Peak& peak) const {
