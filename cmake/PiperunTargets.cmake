@@ -34,7 +34,8 @@ if(PIPERUN_SANITIZE)
     target_compile_options(piperun_flags INTERFACE -fno-sanitize=null,alignment,object-size,vptr)
   endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-    target_compile_options(piperun_flags INTERFACE -Wno-maybe-uninitialized)  # its manual: false ones with sanitizers
+    # Its manual: false ones with sanitizers; and it inlines one half of a replaced operator new and delete.
+    target_compile_options(piperun_flags INTERFACE -Wno-maybe-uninitialized -Wno-mismatched-new-delete)
   endif()
 endif()
 
