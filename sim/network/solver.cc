@@ -1,0 +1,440 @@
+#include "sim/network/solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/check.h"
+#include "base/number.h"
+#include "sim/network/epanet_constants.h"
+
+namespace piperun::sim {
+namespace {
+
+constexpr double kBalanced_m3_s = 1e-10;
+constexpr int kBalanceTrials = 4;
+constexpr double kMostTrickle_m3_s = 2e-6;  // through a closed link; more feeds a part that is cut off
+constexpr double kDampedStep = 0.6;
+constexpr double kGreatestDemandStep = 0.4;
+
+std::vector<std::pair<int, int>> GatherEnds(const HydraulicModel& model) {
+  std::vector<std::pair<int, int>> ends;
+  for (int link = 0; link < model.link_count(); ++link) ends.emplace_back(model.From(link), model.To(link));
+  return ends;
+}
+
+constexpr double kNoSetting = std::numeric_limits<double>::quiet_NaN();
+
+double FirstOutletFlow_m3_s(Outlet::Kind kind) {
+  return kind == Outlet::Kind::kEmitter ? epanet::kFirstEmitterFlow_m3_s : epanet::kFirstLeakageFlow_m3_s;
+}
+
+void AddLinkState(LinkStatus status, double setting, HydraulicState& state) {
+  state.status.push_back(status);
+  state.setting.push_back(setting);
+}
+
+bool PinsPressure(ValveKind kind) {
+  return kind == ValveKind::kPressureReducing || kind == ValveKind::kPressureSustaining;
+}
+
+}  // namespace
+
+HydraulicSolver::HydraulicSolver(const HydraulicModel& model)
+    : model_(model),
+      laws_(model),
+      statuses_(model_, laws_),
+      outlets_(FindOutlets(model)),
+      ends_(GatherEnds(model)),
+      system_(model.junction_count(), ends_),
+      losses_(ends_.size()),
+      predicted_m3_s_(ends_.size()),
+      conductance_m2_s_(ends_.size()),
+      outlet_predicted_m3_s_(outlets_.size()),
+      outlet_conductance_m2_s_(outlets_.size()),
+      excess_m3_s_(static_cast<std::size_t>(model.node_count())) {}
+
+HydraulicState HydraulicSolver::MakeState() const {
+  HydraulicState state;
+  const auto junctions = static_cast<std::size_t>(model_.junction_count());
+  for (const ReservoirNode& reservoir : model_.reservoirs) state.head_m.push_back(reservoir.head_m);
+  for (const TankNode& tank : model_.tanks) state.head_m.push_back(tank.elevation_m + tank.initial_level_m);
+  const double highest = *std::max_element(state.head_m.begin(), state.head_m.end());
+  state.inflow_m3_s.resize(state.head_m.size());
+  state.head_m.insert(state.head_m.begin(), junctions, highest);
+  state.demand_m3_s.resize(junctions);
+  state.delivered_m3_s.resize(junctions);
+  state.emitter_m3_s.resize(junctions);
+  state.fixed_leak_m3_s.resize(junctions);
+  state.variable_leak_m3_s.resize(junctions);
+  for (const Outlet& outlet : outlets_) {
+    if (outlet.kind != Outlet::Kind::kDemand) OutletFlow(outlet, state) = FirstOutletFlow_m3_s(outlet.kind);
+  }
+  for (const PipeLink& pipe : model_.pipes) AddLinkState(pipe.status, kNoSetting, state);
+  for (const PumpLink& pump : model_.pumps) AddLinkState(pump.status, pump.speed, state);
+  for (const ValveLink& valve : model_.valves) {
+    AddLinkState(valve.status, valve.status == LinkStatus::kActive ? valve.setting : kNoSetting, state);
+  }
+  for (int link = 0; link < model_.link_count(); ++link) {
+    state.flow_m3_s.push_back(laws_.FirstFlow_m3_s(link, state.status[link], state.setting[link]));
+  }
+  return state;
+}
+
+void HydraulicSolver::SetLeak(int junction, const LeakCoefficients& leak, HydraulicState& state) {
+  const auto set = [&](Outlet::Kind kind, double coefficient, double exponent) {
+    auto found = std::find_if(outlets_.begin(), outlets_.end(), [&](const Outlet& outlet) {
+      return outlet.junction == junction && outlet.kind == kind;
+    });
+    if (found == outlets_.end()) {
+      if (coefficient == 0) return;
+      found =
+          outlets_.insert(found, {kind, junction, 0, exponent, model_.junctions[junction].elevation_m, 0});
+      outlet_predicted_m3_s_.push_back(0);
+      outlet_conductance_m2_s_.push_back(0);
+    }
+    found->coefficient = coefficient;
+    const double flow = CalcOutletFlow_m3_s(*found, state.head_m[junction], 0);
+    OutletFlow(*found, state) = coefficient == 0 ? 0 : std::max(flow, epanet::kZeroFlow_m3_s);
+  };
+  set(Outlet::Kind::kFixedLeak, leak.fixed_m25_s, 2);
+  set(Outlet::Kind::kVariableLeak, leak.variable_m15_s, 2.0 / 3);
+}
+
+/// Outlets with nothing to deliver stay out of the equations.
+bool HydraulicSolver::IsIdle(const Outlet& outlet, const HydraulicState& state) const {
+  return outlet.kind == Outlet::Kind::kDemand ? state.demand_m3_s[outlet.junction] <= 0
+                                              : outlet.coefficient == 0;
+}
+
+bool HydraulicSolver::IsControlled(const HydraulicState& state, int link) const {
+  const int valve = link - model_.first_valve();
+  if (valve < 0 || std::isnan(state.setting[link])) return false;
+  const ValveKind kind = model_.valves[valve].kind;
+  return PinsPressure(kind) || kind == ValveKind::kFlowControl;
+}
+
+bool HydraulicSolver::IsPinned(const HydraulicState& state, int link) const {
+  const int valve = link - model_.first_valve();
+  return valve >= 0 && PinsPressure(model_.valves[valve].kind) && !std::isnan(state.setting[link]) &&
+         state.status[link] == LinkStatus::kActive;
+}
+
+bool HydraulicSolver::HasPinned(const HydraulicState& state) const {
+  for (int link = model_.first_valve(); link < model_.link_count(); ++link) {
+    if (IsPinned(state, link)) return true;
+  }
+  return false;
+}
+
+/// A link's part in the equations: its flow if no head changed, q - h/h' + dH/h', and how it follows heads.
+void HydraulicSolver::PredictLink(int link, double flow_m3_s, double conductance) {
+  const auto& [from, to] = ends_[link];
+  predicted_m3_s_[link] = flow_m3_s;
+  conductance_m2_s_[link] = conductance;
+  system_.AddLink(link, conductance);
+  if (from < model_.junction_count()) system_.AddRight(from, -flow_m3_s);
+  if (to < model_.junction_count()) system_.AddRight(to, flow_m3_s);
+}
+
+/// What comes to each node by all links but pinned valves, minus what leaves it: what a pinned valve must
+/// carry.
+void HydraulicSolver::CalcExcess(const HydraulicState& state) {
+  std::fill(excess_m3_s_.begin(), excess_m3_s_.end(), 0.0);
+  for (int link = 0; link < model_.link_count(); ++link) {
+    if (IsPinned(state, link)) continue;
+    const bool passes_setting = IsControlled(state, link) && state.status[link] == LinkStatus::kActive;
+    const double flow = passes_setting ? state.setting[link] : state.flow_m3_s[link];
+    excess_m3_s_[ends_[link].first] -= flow;
+    excess_m3_s_[ends_[link].second] += flow;
+  }
+  for (int i = 0; i < model_.junction_count(); ++i) excess_m3_s_[i] -= state.Outflow_m3_s(i);
+}
+
+void HydraulicSolver::Assemble(const HydraulicState& state) {
+  laws_.CalcLosses(state, losses_);
+  system_.Clear();
+  if (HasPinned(state)) CalcExcess(state);
+  for (int i = 0; i < model_.junction_count(); ++i) {
+    if (!model_.options.pressure_driven || state.demand_m3_s[i] <= 0)
+      system_.AddRight(i, -state.delivered_m3_s[i]);
+  }
+  AssembleOutlets(state);
+  AssembleLinks(state);
+}
+
+void HydraulicSolver::AssembleLinks(const HydraulicState& state) {
+  for (int link = 0; link < model_.link_count(); ++link) {
+    if (IsControlled(state, link)) {
+      AssembleValve(state, link);
+    } else {
+      const double conductance = 1 / losses_[link].slope_s_m2;
+      const double drop = state.head_m[ends_[link].first] - state.head_m[ends_[link].second];
+      PredictLink(link, state.flow_m3_s[link] + conductance * (drop - losses_[link].loss_m), conductance);
+    }
+  }
+}
+
+void HydraulicSolver::AssembleValve(const HydraulicState& state, int link) {
+  const auto& [from, to] = ends_[link];
+  const double drop = state.head_m[from] - state.head_m[to];
+  if (IsPinned(state, link)) return AssemblePinned(state, link);
+  if (state.status[link] == LinkStatus::kActive) {  // flow control: passes its setting whatever the heads
+    const double conductance = 1 / epanet::kClosedSlope_s_m2;
+    return PredictLink(link, state.setting[link] + conductance * drop, conductance);
+  }
+  const double conductance = 1 / losses_[link].slope_s_m2;
+  PredictLink(link, state.flow_m3_s[link] + conductance * (drop - losses_[link].loss_m), conductance);
+}
+
+/// What a pinned valve must pass, given the excess of its nodes.
+double HydraulicSolver::PinnedFlow_m3_s(int link) const {
+  const bool reduces = model_.valves[link - model_.first_valve()].kind == ValveKind::kPressureReducing;
+  return reduces ? -excess_m3_s_[ends_[link].second] : excess_m3_s_[ends_[link].first];
+}
+
+/// An active PRV or PSV: one node's head is its setting, and what flows is what this node needs or has to
+/// spare.
+void HydraulicSolver::AssemblePinned(const HydraulicState& state, int link) {
+  const auto& [from, to] = ends_[link];
+  const bool reduces = model_.valves[link - model_.first_valve()].kind == ValveKind::kPressureReducing;
+  const int pinned = reduces ? to : from, other = reduces ? from : to;
+  const double goal_m = model_.junctions[pinned].elevation_m + state.setting[link];
+  const double through = PinnedFlow_m3_s(link);
+  predicted_m3_s_[link] = through;
+  conductance_m2_s_[link] = 0;
+  system_.AddDiagonal(pinned, epanet::kPinWeight_m2_s);
+  system_.AddRight(pinned, epanet::kPinWeight_m2_s * (goal_m - state.head_m[pinned]));
+  if (through > 0) system_.AddRight(other, reduces ? -through : through);
+  if (!reduces) system_.AddLink(link, 1 / epanet::kClosedSlope_s_m2);  // keeps the far side supported
+}
+
+void HydraulicSolver::AssembleOutlets(const HydraulicState& state) {
+  for (std::size_t i = 0; i < outlets_.size(); ++i) {
+    const Outlet& outlet = outlets_[i];
+    const double full = state.demand_m3_s[outlet.junction];
+    if (IsIdle(outlet, state)) continue;
+    const double flow = OutletFlow(outlet, state);
+    const HeadLoss head = CalcOutletHead(outlet, flow, full, model_.options);
+    const double drop = state.head_m[outlet.junction] - outlet.base_head_m;
+    outlet_conductance_m2_s_[i] = 1 / head.slope_s_m2;
+    outlet_predicted_m3_s_[i] = flow + (drop - head.loss_m) / head.slope_s_m2;
+    system_.AddDiagonal(outlet.junction, outlet_conductance_m2_s_[i]);
+    system_.AddRight(outlet.junction, -outlet_predicted_m3_s_[i]);
+  }
+}
+
+void HydraulicSolver::UpdateLinkFlow(HydraulicState& state, int link, double relaxation, FlowChange& change) {
+  const double flow = state.flow_m3_s[link];
+  double step = relaxation * (predicted_m3_s_[link] + conductance_m2_s_[link] * Rise_m(link) - flow);
+  const int pump = link - model_.first_pump();
+  const bool is_power_pump = pump >= 0 && link < model_.first_valve() && laws_.IsConstantPower(pump);
+  if (is_power_pump && -step > flow) step = -flow / 2;  // it has no law for flow backwards
+  state.flow_m3_s[link] = flow + step;
+  change.total_m3_s += std::abs(flow + step);
+  change.changed_m3_s += std::abs(step);
+  change.greatest_m3_s = std::max(change.greatest_m3_s, std::abs(step));
+}
+
+void HydraulicSolver::UpdateOutletFlow(HydraulicState& state, std::size_t i, double relaxation,
+                                       FlowChange& change) {
+  const Outlet& outlet = outlets_[i];
+  const double full = state.demand_m3_s[outlet.junction];
+  const bool is_demand = outlet.kind == Outlet::Kind::kDemand;
+  if (IsIdle(outlet, state)) return;
+  double& flow = OutletFlow(outlet, state);
+  double step = relaxation * (outlet_predicted_m3_s_[i] +
+                              outlet_conductance_m2_s_[i] * system_.Solution(outlet.junction) - flow);
+  if (is_demand) step = std::clamp(step, -kGreatestDemandStep * full, kGreatestDemandStep * full);
+  flow += step;
+  change.total_m3_s += std::abs(flow);
+  change.changed_m3_s += std::abs(step);
+  change.greatest_m3_s = std::max(change.greatest_m3_s, std::abs(step));
+}
+
+HydraulicSolver::FlowChange HydraulicSolver::UpdateFlows(HydraulicState& state, double relaxation) {
+  FlowChange change;
+  for (int link = 0; link < model_.link_count(); ++link) UpdateLinkFlow(state, link, relaxation, change);
+  for (std::size_t i = 0; i < outlets_.size(); ++i) UpdateOutletFlow(state, i, relaxation, change);
+  RaiseHeads(state);
+  return change;
+}
+
+/// An active control valve whose setting makes the equations contradict each other is opened for good.
+bool HydraulicSolver::HandOverValve(HydraulicState& state) const {
+  for (int link = model_.first_valve(); link < model_.link_count(); ++link) {
+    const auto& [from, to] = ends_[link];
+    if (from != system_.bad_junction() && to != system_.bad_junction()) continue;
+    if (!IsControlled(state, link) || state.status[link] != LinkStatus::kActive) return false;
+    state.status[link] = IsPinned(state, link) ? LinkStatus::kPressureShort : LinkStatus::kFlowShort;
+    return true;
+  }
+  return false;
+}
+
+/// One Newton step. False when the equations have no solution.
+bool HydraulicSolver::Iterate(HydraulicState& state, double relaxation, SolveReport& report,
+                              FlowChange& change) {
+  Assemble(state);
+  while (!system_.Solve()) {
+    if (!HandOverValve(state)) return false;
+    Assemble(state);
+  }
+  change = UpdateFlows(state, relaxation);
+  const double least_total = model_.options.accuracy * epanet::kCubicFoot_m3;
+  report.relative_flow_change = change.total_m3_s > least_total ? change.changed_m3_s / change.total_m3_s
+                                                                : change.changed_m3_s / epanet::kCubicFoot_m3;
+  return true;
+}
+
+bool HydraulicSolver::OutletsConverged(const HydraulicState& state) const {
+  for (const Outlet& outlet : outlets_) {
+    const double full = state.demand_m3_s[outlet.junction];
+    const bool is_demand = outlet.kind == Outlet::Kind::kDemand;
+    if (outlet.kind == Outlet::Kind::kEmitter || IsIdle(outlet, state)) continue;
+    const double law = CalcOutletFlow_m3_s(outlet, state.head_m[outlet.junction], full);
+    const double allowed =
+        epanet::kOutflowTolerance_m3_s + (is_demand ? 0 : epanet::kOutflowRelativeTolerance * law);
+    if (std::abs(law - OutletFlow(outlet, state)) > allowed) return false;
+  }
+  return true;
+}
+
+bool HydraulicSolver::IsConverged(const HydraulicState& state, const SolveReport& report,
+                                  const FlowChange& change) {
+  const HydraulicOptions& options = model_.options;
+  if (report.relative_flow_change > options.accuracy) return false;
+  if (options.head_error_m > 0) {
+    SolveReport error;
+    CalcHeadError(state, error);
+    if (error.max_head_error_m > options.head_error_m) return false;
+  }
+  if (options.flow_change_m3_s > 0 && change.greatest_m3_s > options.flow_change_m3_s) return false;
+  return OutletsConverged(state);
+}
+
+void HydraulicSolver::CalcHeadError(const HydraulicState& state, SolveReport& report) {
+  laws_.CalcLosses(state, losses_);
+  report.max_head_error_m = 0;
+  report.worst_link = -1;
+  for (int link = 0; link < model_.link_count(); ++link) {
+    if (IsClosed(state.status[link]) || IsControlled(state, link)) continue;
+    const double drop = state.head_m[ends_[link].first] - state.head_m[ends_[link].second];
+    const double error = std::abs(drop - losses_[link].loss_m);
+    if (!(error <= report.max_head_error_m)) {
+      report.max_head_error_m = error;
+      report.worst_link = link;
+    }
+  }
+}
+
+void HydraulicSolver::CalcImbalance(const HydraulicState& state, SolveReport& report) {
+  std::fill(excess_m3_s_.begin(), excess_m3_s_.end(), 0.0);
+  for (std::size_t link = 0; link < ends_.size(); ++link) {
+    excess_m3_s_[ends_[link].first] -= state.flow_m3_s[link];
+    excess_m3_s_[ends_[link].second] += state.flow_m3_s[link];
+  }
+  report.max_imbalance_m3_s = 0;
+  report.worst_node = -1;
+  for (int i = 0; i < model_.junction_count(); ++i) {
+    const double imbalance = std::abs(excess_m3_s_[i] - state.Outflow_m3_s(i));
+    if (!(imbalance <= report.max_imbalance_m3_s)) {
+      report.max_imbalance_m3_s = imbalance;
+      report.worst_node = i;
+    }
+  }
+}
+
+/// The equations let a trickle through closed links, and a pinned valve passes what its node needed one
+/// iteration ago. Closes the former, sets the latter to what the node needs now.
+void HydraulicSolver::SettleFlows(HydraulicState& state) {
+  for (std::size_t link = 0; link < ends_.size(); ++link) {
+    double& flow = state.flow_m3_s[link];
+    if (IsClosed(state.status[link]) && std::abs(flow) < kMostTrickle_m3_s) flow = 0;
+  }
+  if (!HasPinned(state)) return;
+  CalcExcess(state);
+  for (int link = model_.first_valve(); link < model_.link_count(); ++link) {
+    if (IsPinned(state, link)) state.flow_m3_s[link] = PinnedFlow_m3_s(link);
+  }
+}
+
+/// Balances mass with the last iteration's linear equations: no new slopes, only right-hand sides.
+void HydraulicSolver::Balance(HydraulicState& state, SolveReport& report) {
+  for (int i = 0; i <= kBalanceTrials; ++i) {
+    SettleFlows(state);
+    CalcImbalance(state, report);
+    if (report.max_imbalance_m3_s <= kBalanced_m3_s || i == kBalanceTrials) return;
+    for (int node = 0; node < model_.junction_count(); ++node) {
+      system_.SetRight(node, excess_m3_s_[node] - state.Outflow_m3_s(node));
+    }
+    system_.SolveAgain();
+    for (int link = 0; link < model_.link_count(); ++link) {
+      if (!IsClosed(state.status[link])) state.flow_m3_s[link] += conductance_m2_s_[link] * Rise_m(link);
+    }
+    for (std::size_t k = 0; k < outlets_.size(); ++k) {
+      if (IsIdle(outlets_[k], state)) continue;
+      OutletFlow(outlets_[k], state) += outlet_conductance_m2_s_[k] * system_.Solution(outlets_[k].junction);
+    }
+    RaiseHeads(state);
+  }
+}
+
+/// By how much the head difference of a link has grown in the last solution.
+double HydraulicSolver::Rise_m(int link) const {
+  const auto& [from, to] = ends_[link];
+  const int n = model_.junction_count();
+  return (from < n ? system_.Solution(from) : 0) - (to < n ? system_.Solution(to) : 0);
+}
+
+void HydraulicSolver::RaiseHeads(HydraulicState& state) const {
+  for (int i = 0; i < model_.junction_count(); ++i) state.head_m[i] += system_.Solution(i);
+}
+
+void HydraulicSolver::CalcInflows(HydraulicState& state) const {
+  std::fill(state.inflow_m3_s.begin(), state.inflow_m3_s.end(), 0.0);
+  const int n = model_.junction_count();
+  for (std::size_t link = 0; link < ends_.size(); ++link) {
+    if (IsClosed(state.status[link])) continue;
+    if (ends_[link].first >= n) state.inflow_m3_s[ends_[link].first - n] -= state.flow_m3_s[link];
+    if (ends_[link].second >= n) state.inflow_m3_s[ends_[link].second - n] += state.flow_m3_s[link];
+  }
+}
+
+SolveReport HydraulicSolver::Solve(HydraulicState& state) {
+  const HydraulicOptions& options = model_.options;
+  const int max_trials = options.max_trials + std::max(0, options.extra_trials);
+  SolveReport report;
+  FlowChange change;
+  int next_check = options.check_frequency;
+  double relaxation = 1;
+  while (report.iterations < max_trials) {
+    ++report.iterations;
+    if (!Iterate(state, relaxation, report, change)) {
+      report.end = SolveReport::End::kSingular;
+      report.worst_node = system_.bad_junction();
+      return report;
+    }
+    const bool damp = options.damp_limit > 0 && report.relative_flow_change <= options.damp_limit;
+    relaxation = damp ? kDampedStep : 1;
+    const bool valves_changed = (options.damp_limit == 0 || damp) && statuses_.UpdatePressureValves(state);
+    if (IsConverged(state, report, change)) {
+      report.end = SolveReport::End::kConverged;
+      if (report.iterations > options.max_trials) break;
+      const bool links_changed = statuses_.UpdateLinks(state);
+      const bool controls_changed = statuses_.UpdatePressureControls(state);
+      if (!valves_changed && !links_changed && !controls_changed) break;
+      report.end = SolveReport::End::kUnbalanced;
+      next_check = report.iterations + options.check_frequency;
+    } else if (report.iterations <= options.max_check && report.iterations == next_check) {
+      statuses_.UpdateLinks(state);
+      next_check += options.check_frequency;
+    }
+  }
+  Balance(state, report);
+  CalcHeadError(state, report);
+  CalcInflows(state);
+  return report;
+}
+
+}  // namespace piperun::sim
