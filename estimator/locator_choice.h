@@ -19,6 +19,7 @@ class LocatorChoice {
 
   /// The kind first, then its parameters.
   void Visit(ParamVisitor& v);
+  bool none() const { return !params_; }
   /// Nothing for "none".
   std::unique_ptr<LeakLocator> Make(const EstimatorStart& start) const;
 

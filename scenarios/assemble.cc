@@ -132,7 +132,8 @@ void BuildMotion(const Scenario& scenario, Assembly& assembly) {
   try {
     assembly.motion = kind.make(scenario.motion.params(), context);
   } catch (const InputError& e) {
-    throw InputError(e.problem(), e.key_path().empty() ? "motion" : "motion." + e.key_path());
+    const bool about_ball = e.key_path().starts_with("ball.");
+    throw InputError(e.problem(), about_ball ? e.key_path() : "motion." + e.key_path());
   }
 }
 

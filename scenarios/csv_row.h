@@ -40,10 +40,10 @@ class CsvRow {
   /// w, x, y, z
   CsvRow& operator<<(const Quaterniond& q) { return *this << q.w() << q.x() << q.y() << q.z(); }
   /// an empty field when there is no value
-  CsvRow& operator<<(const std::optional<double>& value) {
+  template <class T>
+  CsvRow& operator<<(const std::optional<T>& value) {
     return value ? *this << *value : *this << std::string_view{};
   }
-
   void operator<<(EndOfRow) { file_.EndRow(); }
 
  private:

@@ -1,5 +1,7 @@
 #include "scenarios/estimator_bank.h"
 
+#include <cmath>
+
 #include "base/check.h"
 #include "scenarios/csv_row.h"
 
@@ -11,6 +13,13 @@ constexpr std::string_view kTrackHeader =
     "q_WB_z [],v_WB_x [m s^-1],v_WB_y [m s^-1],v_WB_z [m s^-1],bg_x [rad s^-1],bg_y [rad s^-1],bg_z [rad "
     "s^-1]\n";
 constexpr std::string_view kLeaksHeader = "chainage_m,sigma_m,x_m,y_m,z_m,t_cpa_ns,flow_m3_s,confidence\n";
+
+/// Index of the first sample at or after t.
+std::int64_t FirstSampleFrom(RobotTime t, Rate rate) {
+  auto k = static_cast<std::int64_t>(std::floor(Seconds(t) * rate.Hz())) - 1;
+  while (RobotTime(SampleOffset(k, rate)) < t) ++k;
+  return k;
+}
 
 void WriteTrackRow(OutputFile& file, const estimator::NavState& nav) {
   CsvRow(file) << static_cast<std::int64_t>(nav.stamp.time_since_epoch().count()) << nav.chainage_m
@@ -56,6 +65,15 @@ struct EstimatorBank::Member {
     track.Append(kTrackHeader);
   }
 
+  void Ingest(const Measurement& measurement) {
+    try {
+      estimator->Ingest(measurement);
+    } catch (const InputError& e) {
+      throw InputError(e.problem(), "estimators." + name + (e.key_path().empty() ? "" : "." + e.key_path()),
+                       e.where());
+    }
+  }
+
   void SampleTrack(RobotTime t, const TruthAt& truth_at) {
     estimator::NavState nav = estimator->nav();
     if (!nav.valid) return;
@@ -98,8 +116,9 @@ EstimatorBank::EstimatorBank(const EstimatorInput& input, const std::filesystem:
 EstimatorBank::~EstimatorBank() = default;
 
 void EstimatorBank::SampleTracksBefore(RobotTime t) {
-  for (;; ++next_track_) {
-    const RobotTime due = RobotTime(SampleOffset(next_track_, track_rate_));
+  if (!next_track_) return;
+  for (;; ++*next_track_) {
+    const RobotTime due = RobotTime(SampleOffset(*next_track_, track_rate_));
     if (due >= t) return;
     for (const auto& member : members_) member->SampleTrack(due, truth_);
   }
@@ -107,8 +126,9 @@ void EstimatorBank::SampleTracksBefore(RobotTime t) {
 
 void EstimatorBank::Ingest(const Measurement& measurement) {
   last_stamp_ = Stamp(measurement);
+  if (!next_track_) next_track_ = FirstSampleFrom(last_stamp_, track_rate_);
   SampleTracksBefore(last_stamp_);
-  for (const auto& member : members_) member->estimator->Ingest(measurement);
+  for (const auto& member : members_) member->Ingest(measurement);
 }
 
 std::vector<EstimatorResult> EstimatorBank::Finish(const std::vector<TrueLeak>& leaks, double match_radius_m,

@@ -36,7 +36,7 @@ class EstimatorBank {
   void SampleTracksBefore(RobotTime t);
 
   Rate track_rate_;
-  std::int64_t next_track_ = 0;
+  std::optional<std::int64_t> next_track_;  ///< the grid begins with the first measurement
   TruthAt truth_;
   RobotTime last_stamp_{};
   std::vector<std::unique_ptr<Member>> members_;

@@ -36,9 +36,9 @@ ToldParams Tell(const StartParams& start, const Scenario& scenario, const Assemb
   } else if (start.heading == "given") {
     told.heading_rad = start.heading_rad;
   }
-  told.chainage_m = assembly.motion->state().chainage_m;
+  told.chainage_m = 0;  // by definition: chainage counts from the launch point
   told.chainage_sd_m = start.chainage_sd_m;
-  told.p_W = assembly.motion->state().X_WB.p;
+  told.p_W = assembly.motion->planned_start_W();
   told.heading_sd_rad = start.heading_sd_rad;
   told.ball_radius_m = start.ball_radius_m.value_or(scenario.ball.radius_m);
   told.ball_radius_sd_m = start.ball_radius_sd_m;
@@ -70,6 +70,13 @@ estimator::EstimatorStart MakeStart(const EstimatorInput& input, const ToldParam
   start.field_W_T = told.field_W_T;
   start.X_BS = {told.p_BS_m, Quaterniond(told.q_BS[0], told.q_BS[1], told.q_BS[2], told.q_BS[3])};
   return start;
+}
+
+void RequireChannel(const EstimatorInput& input, std::string_view type, const std::string& what,
+                    const std::string& key_path) {
+  const bool there = std::any_of(input.channels.begin(), input.channels.end(),
+                                 [&](const RecordedChannel& channel) { return channel.type == type; });
+  if (!there) throw InputError("this filter needs " + what + ", and nothing records one", key_path);
 }
 
 }  // namespace
@@ -139,14 +146,17 @@ EstimatorInput LoadEstimatorInput(const std::string& path) {
 
 std::unique_ptr<estimator::Estimator> MakeEstimator(const EstimatorInput& input, const ToldEstimator& told) {
   const auto& kinds = estimator::FilterKinds();
+  const std::string key_path = "estimators." + told.name;
   const auto kind =
       std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.name == told.kind.kind(); });
   Demand(kind != kinds.end(), "a filter's kind was checked when it was read");
+  const estimator::ChannelNeeds needs = kind->needs(told.kind.params());
+  if (needs.imu) RequireChannel(input, "imu", "an IMU", key_path);
+  if (needs.audio) RequireChannel(input, "audio", "a hydrophone (or 'locator: {kind: none}')", key_path);
   try {
     return kind->make(told.kind.params(), MakeStart(input, told.start));
   } catch (const InputError& e) {
-    throw InputError(e.problem(),
-                     "estimators." + told.name + (e.key_path().empty() ? "" : "." + e.key_path()));
+    throw InputError(e.problem(), key_path + (e.key_path().empty() ? "" : "." + e.key_path()));
   }
 }
 

@@ -11,6 +11,7 @@
 #include "scenarios/replay.h"
 #include "scenarios/run.h"
 #include "scenarios/run_folder.h"
+#include "scenarios/run_json.h"
 #include "scenarios/seal.h"
 #include "scenarios/truth_log.h"
 
@@ -62,18 +63,11 @@ RunResult Replay(const ReplayOptions& options) {
   WriteTextFile(folder.staging() / "estimator_input.yaml",
                 WriteYaml([&](ParamVisitor& v) { input.Visit(v); }));
   EstimatorBank bank(input, folder.staging() / "estimates", open_truth());
-  RunResult result;
-  RobotTime last{};
+  RunResult result = LoadRunSummary(ReadTextFile(from / "run.json"));
   while (const Measurement* measurement = log.Next()) {
     if (options.stop && *options.stop) throw Interrupted();
-    last = Stamp(*measurement);
     bank.Ingest(*measurement);
   }
-  result.scenario = scenario.name;
-  result.seed = scenario.seed;
-  result.run = scenario.run;
-  result.status = "ok";
-  result.duration_s = Seconds(last);
   result.leaks = LoadTrueLeaks(from / "truth" / "leaks.csv");
   result.estimators = bank.Finish(result.leaks, scenario.score.match_radius_m, open_truth);
   Seal(folder, begin, result);

@@ -29,7 +29,7 @@ Json ToJson(const TrueLeak& leak) {
           {"chainage_m", leak.chainage_m},
           {"position_m", Position(leak.p_W)},
           {"flow_m3_s", leak.flow_m3_s},
-          {"t_cpa_ns", leak.t_cpa_ns},
+          {"t_cpa_ns", OrNull(leak.t_cpa_ns)},
           {"snr_dB", OrNull(leak.snr_dB)}};
 }
 
@@ -100,6 +100,23 @@ std::string WriteRunJson(const RunResult& result) {
       {"hash", result.file_hashes},
   };
   return json.dump(2) + "\n";
+}
+
+RunResult LoadRunSummary(const std::string& text) {
+  try {
+    const Json json = Json::parse(text);
+    RunResult result;
+    result.scenario = json.at("scenario").get<std::string>();
+    result.seed = json.at("seed").get<std::int64_t>();
+    result.run = json.at("run").get<std::int64_t>();
+    result.status = json.at("status").get<std::string>();
+    result.duration_s = json.at("duration_s").get<double>();
+    result.route_length_m = json.at("route").at("length_m").get<double>();
+    result.route_pipes = json.at("route").at("pipes").get<std::vector<std::string>>();
+    return result;
+  } catch (const Json::exception& e) {
+    throw InputError(std::string("this is not the run.json of a run: ") + e.what(), "", "run.json");
+  }
 }
 
 JsonValue FindJson(const std::string& json, const std::string& pointer) {

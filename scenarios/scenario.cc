@@ -65,7 +65,10 @@ void LeakEntry::Visit(ParamVisitor& v) {
 }
 
 void MissionParams::Visit(ParamVisitor& v) {
-  v.Text({"launch", "Node where the ball is put in, at rest on the invert; chainage 0."}, launch);
+  v.Text({"launch",
+          "Node where the ball is put in, at rest on the invert; chainage 0. A ball lighter than water "
+          "rises to the crown at once."},
+         launch);
   v.Text({"retrieve", "Node where it is taken out."}, retrieve);
   v.Number({"lateral_sd_m", "Scatter of the launch place around the wall, one sigma."}, Range::Between(0, 1),
            lateral_sd_m);
@@ -126,7 +129,7 @@ void Scenario::Visit(ParamVisitor& v) {
   v.Text({"description", "One or two sentences about it."}, description);
   v.Integer({"seed", "Seed of all noise."}, 0, INT64_MAX, seed);
   v.Integer({"run", "Run index: another draw of everything random under the same seed."}, 0, INT64_MAX, run);
-  v.Number({"gravity_m_s2", "Gravity, along -z."}, {.min = 0, .max = 100}, gravity_m_s2);
+  v.Number({"gravity_m_s2", "Gravity, along -z."}, {.min = 0, .max = 100, .min_open = true}, gravity_m_s2);
   v.Struct({"water", "The water."}, water);
   v.Struct({"network", "The pipes."}, network);
   v.Struct({"flow", "What enters at the launch node."}, flow);

@@ -53,8 +53,8 @@ struct TrueLeak {
   double chainage_m = 0;
   Vector3d p_W = Vector3d::Zero();
   double flow_m3_s = 0;
-  std::int64_t t_cpa_ns = 0;     ///< true time of the closest approach
-  std::optional<double> snr_dB;  ///< 1-4 kHz, at the closest approach; nothing without a hydrophone
+  std::optional<std::int64_t> t_cpa_ns;  ///< true time of the ball's passage; nothing when it never came
+  std::optional<double> snr_dB;          ///< 1-4 kHz, at the passage; nothing without passage or hydrophone
 };
 
 struct ScoredLeak {

@@ -85,7 +85,7 @@ std::vector<TrueLeak> LoadTrueLeaks(const std::filesystem::path& path) {
     leak.chainage_m = number(3);
     leak.p_W = {number(4), number(5), number(6)};
     leak.flow_m3_s = number(7);
-    leak.t_cpa_ns = static_cast<std::int64_t>(number(8));
+    if (!f[8].empty()) leak.t_cpa_ns = static_cast<std::int64_t>(number(8));
     if (!f[9].empty()) leak.snr_dB = number(9);
     leaks.push_back(std::move(leak));
   }

@@ -21,13 +21,13 @@ constexpr std::string_view kLeaksHeader = "id,pipe,s_m,chainage_m,x_m,y_m,z_m,fl
 
 std::int64_t Nanoseconds(TrueTime t) { return t.time_since_epoch().count(); }
 
-/// When the ball passes the leak, to the nanosecond: from the closest step on at the speed it had there. A
-/// ball that turned back or stopped short was closest at that step itself.
-std::int64_t RefineApproach_ns(const sim::TruthState& closest, double leak_chainage_m, double step_s) {
+/// When the ball passed the leak, to the nanosecond: from the closest step on at the speed it had there.
+/// Nothing when it turned back or stopped short.
+std::optional<TrueTime> FindPassage(const sim::TruthState& closest, double leak_chainage_m, double step_s) {
   const double speed = closest.v_WB_W.norm();
   const double ahead_m = leak_chainage_m - closest.chainage_m;
-  const bool passed = std::abs(ahead_m) < speed * step_s;
-  return Nanoseconds(closest.time) + (passed ? FromSeconds(ahead_m / speed).count() : 0);
+  if (std::abs(ahead_m) > speed * step_s) return std::nullopt;
+  return closest.time + (speed > 0 ? FromSeconds(ahead_m / speed) : Duration(0));
 }
 
 /// Leak over everything else between 1 and 4 kHz, or as much of that band as the hydrophone hears.
@@ -102,18 +102,16 @@ std::vector<TrueLeak> TruthRecorder::Close(const acoustics::HydrophoneParams* hy
   std::vector<TrueLeak> leaks;
   for (std::size_t i = 0; i < approaches_.size(); ++i) {
     const PlacedLeak& placed = assembly_.leaks[i];
-    TrueLeak leak{placed.leak.id,
-                  assembly_.network->pipe(placed.leak.pipe).id,
-                  placed.leak.s_m,
-                  placed.chainage_m,
-                  placed.p_W,
-                  placed.state.flow_m3_s,
-                  0,
-                  std::nullopt};
-    if (approaches_[i]) {
-      const sim::TruthState& closest = *approaches_[i];
-      leak.t_cpa_ns = RefineApproach_ns(closest, placed.chainage_m, assembly_.motion->rate().Period_s());
-      leak.snr_dB = CalcSnr_dB(assembly_, i, hydrophone, closest);
+    TrueLeak leak{placed.leak.id,  assembly_.network->pipe(placed.leak.pipe).id,
+                  placed.leak.s_m, placed.chainage_m,
+                  placed.p_W,      placed.state.flow_m3_s,
+                  std::nullopt,    std::nullopt};
+    const auto& closest = approaches_[i];
+    const double step_s = assembly_.motion->rate().Period_s();
+    const auto passage = closest ? FindPassage(*closest, placed.chainage_m, step_s) : std::nullopt;
+    if (passage) {
+      leak.t_cpa_ns = Nanoseconds(*passage);
+      leak.snr_dB = CalcSnr_dB(assembly_, i, hydrophone, *closest);
     }
     WriteLeak(file, leak);
     leaks.push_back(std::move(leak));

@@ -34,7 +34,7 @@ WaterAtBall FlowField::Eval(const RouteSpot& spot, const Vector3d& p_W, TrueTime
   water.velocity_W = speed * spot.axis.tangent_W;
   water.acceleration_W = speed * speed * stretch * spot.axis.curvature_W;
   if (offset_m > kOnAxis_m) {
-    const Vector3d gradient_W = (bulk * mean.gradient / (piece.radius_m * offset_m)) * d;
+    const Vector3d gradient_W = (stretch * bulk * mean.gradient / (piece.radius_m * offset_m)) * d;
     water.spin_W = 0.5 * gradient_W.cross(spot.axis.tangent_W);
   }
   const double dynamic_pressure_Pa = 0.5 * water_.density_kg_m3 * bulk * std::abs(bulk);

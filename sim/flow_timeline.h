@@ -8,10 +8,10 @@ namespace piperun::sim {
 
 /// Water in a stretch of pipe without inflow or outflow.
 struct FlowReach {
-  double s_begin_m = 0;      ///< along the pipe from its `from` node
+  double s_begin_m = 0;  ///< along the pipe from its `from` node
   double s_end_m = 0;
-  double flow_m3_s = 0;      ///< positive from `from` to `to`
-  double head_begin_m = 0;   ///< piezometric head (elevation + pressure head) at s_begin
+  double flow_m3_s = 0;     ///< positive from `from` to `to`
+  double head_begin_m = 0;  ///< piezometric head (elevation + pressure head) at s_begin
   double head_end_m = 0;
   double friction_factor = 0;  ///< Darcy
 };

@@ -210,6 +210,26 @@ void FillSidePipes(const Network& network, const Route& route, FlowState& state)
   }
 }
 
+/// Cold water boils at an absolute pressure near zero: below this gauge pressure the column parts.
+constexpr double kPartingPressure_Pa = -1e5;
+
+/// Looks at both ends and the middle of every piece of the route.
+void RequireWholeColumn(const Problem& problem, const Route& route, const FlowTimeline& timeline) {
+  for (const RoutePiece& piece : route.pieces()) {
+    for (const double part : {0.0, 0.5, 1.0}) {
+      const double chainage_m = piece.line.s_begin_m + part * piece.line.length_m;
+      const double head_m = timeline.Eval(piece.pipe, piece.PipeS_m(chainage_m), TrueTime{}).head_m;
+      const double z_m = EvalCentreline(piece.line, chainage_m).p_W.z();
+      const double pressure_Pa = problem.water.density_kg_m3 * problem.gravity_m_s2 * (head_m - z_m);
+      if (pressure_Pa >= kPartingPressure_Pa) continue;
+      throw InputError("the pressure falls to " + FormatNumber(pressure_Pa) + " Pa (gauge) at chainage " +
+                           FormatNumber(chainage_m) + " m, where the water would part; allowed: above " +
+                           FormatNumber(kPartingPressure_Pa) + " Pa. Raise the inlet pressure",
+                       "flow.inlet_pressure_Pa");
+    }
+  }
+}
+
 }  // namespace
 
 SteadyFlow SolveSteadyFlow(const Network& network, const Route& route, const InletCondition& inlet,
@@ -230,7 +250,9 @@ SteadyFlow SolveSteadyFlow(const Network& network, const Route& route, const Inl
 
   std::vector<double> areas;
   for (const Pipe& pipe : network.pipes()) areas.push_back(pipe.area_m2());
-  return {FlowTimeline(std::move(areas), {TrueTime{}}, {std::move(state)}), std::move(leak_states)};
+  FlowTimeline timeline(std::move(areas), {TrueTime{}}, {std::move(state)});
+  RequireWholeColumn(problem, route, timeline);
+  return {std::move(timeline), std::move(leak_states)};
 }
 
 }  // namespace piperun::sim

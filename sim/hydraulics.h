@@ -24,9 +24,9 @@ struct SteadyFlow {
 
 /// Steady flow along a route in series: head falls by Darcy-Weisbach friction, each leak takes its orifice
 /// flow Q = Cd A sqrt(2 dp / rho). Throws InputError (keys "flow...", "leaks[i]...") when a leak takes more
-/// than flows, or pressure at a leak is not positive. Pipes beside the route hold still water under the head
-/// of the node they hang on (not a number where no water connects). Losses of bends and fittings are left
-/// out.
+/// than flows, pressure at a leak is not positive, or the water column would part. Pipes beside the route
+/// hold still water under the head of the node they hang on (not a number where no water connects). Losses of
+/// bends and fittings are left out.
 SteadyFlow SolveSteadyFlow(const Network& network, const Route& route, const InletCondition& inlet,
                            std::span<const Leak> leaks, const WaterProperties& water, double gravity_m_s2);
 

@@ -114,15 +114,20 @@ TriadErrorState MakeState(const TriadErrorCoefficients& c, const TriadStream& st
   return state;
 }
 
+Vector3d CalcBias(const TriadErrorState& state, const TriadErrorCoefficients& c) {
+  Vector3d bias = c.bias + state.walk;
+  if (c.pole_sd > 0) {
+    for (const Vector3d& pole : state.poles) bias += pole;
+  }
+  return bias;
+}
+
 Vector3d StepError(TriadErrorState& state, std::int64_t k, const TriadStream& stream,
                    const TriadErrorCoefficients& c) {
   const auto sample = static_cast<std::uint64_t>(k);
   if (k > 0 && c.walk_sd > 0) state.walk += c.walk_sd * Normal3(stream, sample, kWalkSlot);
   if (k > 0 && c.pole_sd > 0) StepPoles(state, sample, stream, c);
-  Vector3d error = c.bias + state.walk;
-  if (c.pole_sd > 0) {
-    for (const Vector3d& pole : state.poles) error += pole;
-  }
+  Vector3d error = CalcBias(state, c);
   if (c.noise_sd > 0) error += c.noise_sd * Normal3(stream, sample, kNoiseSlot);
   return error;
 }

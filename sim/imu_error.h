@@ -89,6 +89,9 @@ TriadErrorCoefficients MakeCoefficients(const TriadErrorParams& params, Rate rat
 /// The state at sample 0: every pole drawn from its stationary distribution, the walk at zero.
 TriadErrorState MakeState(const TriadErrorCoefficients& c, const TriadStream& stream);
 
+/// The part of the error that is no white noise: b0 + b_B + b_K, in u.
+Vector3d CalcBias(const TriadErrorState& state, const TriadErrorCoefficients& c);
+
 /// Advances `state` to sample k (from sample k - 1; nothing moves for k = 0) and returns everything that adds
 /// to the reading there: b0 + b_B + b_K + n, in u. Call once per sample, in order.
 Vector3d StepError(TriadErrorState& state, std::int64_t k, const TriadStream& stream,

@@ -48,13 +48,10 @@ Vector3d CalcVelocityIncrement(const TruthState& a, const TruthState& b, const V
   return a.X_WB.q.conjugate() * dv_W + CalcTurnChange(b.dtheta_B_rad, p_BP) / dt_s - u_lever_before_B;
 }
 
-}  // namespace
-
-ImuInterval CalcImuInterval(const TruthWindow& window, TrueTime begin, TrueTime end, const Vector3d& p_BP,
-                            const Vector3d& gravity_W) {
-  const double dt = window.rate().Period_s();
-  double steps = 0;
-  Vector3d dtheta = Vector3d::Zero(), f = Vector3d::Zero(), dv = Vector3d::Zero();
+/// Calls visit(a, b, from, to, n) for every step n, from state a to state b, of which the part from `from` to
+/// `to` lies inside (begin, end].
+template <class Visit>
+void ForEachStep(const TruthWindow& window, TrueTime begin, TrueTime end, const Visit& visit) {
   bool done = false;
   for (std::int64_t n = window.StepAt(begin) + 1; !done; ++n) {
     const TruthState& a = window.at(n - 1);
@@ -62,14 +59,42 @@ ImuInterval CalcImuInterval(const TruthWindow& window, TrueTime begin, TrueTime 
     const double step_s = Seconds(b.time - a.time);
     const double from = std::max(0.0, Seconds(begin - a.time) / step_s);
     const double to = std::min(1.0, Seconds(end - a.time) / step_s);
-    const double part = to - from;
-    steps += part;
-    dtheta += part * b.dtheta_B_rad;
-    f += IntegrateCentre(a, b, from, to) + part * CalcLeverAcceleration(a, b, p_BP, dt);
-    dv += part * CalcVelocityIncrement(a, b, p_BP, gravity_W, dt, n == 1);
+    visit(a, b, from, to, n);
     done = b.time >= end;
   }
-  return {steps * dt, dtheta / (steps * dt), f / steps, dv};
+}
+
+}  // namespace
+
+ImuInterval CalcImuInterval(const TruthWindow& window, TrueTime begin, TrueTime end, const Vector3d& p_BP) {
+  const double dt = window.rate().Period_s();
+  double steps = 0;
+  Vector3d dtheta = Vector3d::Zero(), f = Vector3d::Zero();
+  ForEachStep(window, begin, end,
+              [&](const TruthState& a, const TruthState& b, double from, double to, std::int64_t) {
+                const double part = to - from;
+                steps += part;
+                dtheta += part * b.dtheta_B_rad;
+                f += IntegrateCentre(a, b, from, to) + part * CalcLeverAcceleration(a, b, p_BP, dt);
+              });
+  return {steps * dt, dtheta / (steps * dt), f / steps};
+}
+
+ImuIntervalIncrements CalcImuIncrements(const TruthWindow& window, TrueTime begin, TrueTime end,
+                                        const Vector3d& p_BP, const Vector3d& gravity_W) {
+  const double dt = window.rate().Period_s();
+  double steps = 0;
+  Vector3d dv = Vector3d::Zero();
+  Quaterniond q_begin_B = Quaterniond::Identity();  // from the ball's axes at the end of the last part
+  ForEachStep(window, begin, end,
+              [&](const TruthState& a, const TruthState& b, double from, double to, std::int64_t n) {
+                const double part = to - from;
+                steps += part;
+                const Quaterniond q_begin_a = q_begin_B * ExpSO3(-from * b.dtheta_B_rad);
+                dv += part * (q_begin_a * CalcVelocityIncrement(a, b, p_BP, gravity_W, dt, n == 1));
+                q_begin_B = q_begin_B * ExpSO3(part * b.dtheta_B_rad);
+              });
+  return {steps * dt, LogSO3(q_begin_B), dv};
 }
 
 }  // namespace piperun::sim

@@ -27,7 +27,7 @@ struct MotionContext {
   const Route* route = nullptr;
   const FlowTimeline* flow = nullptr;
   BallParams ball;
-  double lateral_sd_m = 0;  ///< scatter of the launch position across the pipe
+  double lateral_sd_m = 0;    ///< scatter of the launch position across the pipe
   double stuck_after_s = 30;  ///< no progress for this long means stuck
 };
 
@@ -42,6 +42,8 @@ class Motion {
   virtual void Step() = 0;
   /// Anything but kRunning is final; the state that made it so is still delivered.
   virtual MotionStatus status() const = 0;
+  /// Where the crew means to put the ball: the start without its scatter. Asked before the first Step().
+  virtual Vector3d planned_start_W() const { return state().X_WB.p; }
 };
 
 struct MotionKind {

@@ -42,7 +42,7 @@ class Sensor {
   virtual SensorValue Sample(std::int64_t k, const TruthWindow& window) = 0;
   /// Pose of the sensor frame in the ball.
   virtual Pose X_BS() const = 0;
-  /// True additive bias at the last sample, for inertial sensors.
+  /// True additive bias at the last sample; inertial sensors, and only they, have one.
   virtual std::optional<ImuBias> bias() const { return std::nullopt; }
 };
 

@@ -262,12 +262,16 @@ std::unique_ptr<Estimator> Make(const Params& params, const EstimatorStart& star
   return std::make_unique<QuaternionEkf>(dynamic_cast<const QuaternionEkfParams&>(params), start);
 }
 
+ChannelNeeds Needs(const Params& params) {
+  return {.imu = true, .audio = !dynamic_cast<const QuaternionEkfParams&>(params).locator.none()};
+}
+
 }  // namespace
 
 FilterKind Kind() {
   return {"quaternion_ekf",
           "Quaternion and gyro bias by an extended Kalman filter; position by rolling or between rests.",
-          MakeParams<QuaternionEkfParams>, Make};
+          MakeParams<QuaternionEkfParams>, Make, Needs};
 }
 
 }  // namespace piperun::estimator::filters::quaternion_ekf

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kMaxDiameterRatio = 0.95;  // as far as wall factor and profile table go
 constexpr double kProgress_m = 0.01;
+constexpr double kTouching_m = 1e-6;  // far above rounding, far below anything a ball would feel
 
 struct BallInPipeParams : ParamsOf<BallInPipeParams> {
   double rate_Hz = 1000;
@@ -42,12 +43,12 @@ Vector3d FindDown(const Vector3d& gravity_W, const Vector3d& tangent_W) {
 
 /// At rest on the invert at chainage 0, moved around the wall by an arc a ~ N(0, lateral_sd): the angle is
 /// a/R. B: x along the pipe, z against gravity across the pipe, y = z x x to the left.
-BallStart MakeStart(const MotionContext& context) {
+BallStart MakeStart(const MotionContext& context, double lateral_sd_m) {
   const RoutePiece& piece = context.route->pieces().front();
   const CentrelinePoint axis = EvalCentreline(piece.line, 0);
   const Vector3d x = axis.tangent_W, z = -FindDown(context.gravity_W, x), y = z.cross(x);
   const double draw = RandomStream(context.seed, "launch", context.run).Normals(0, 0)[0];
-  const double angle = context.lateral_sd_m * draw / piece.radius_m;
+  const double angle = lateral_sd_m * draw / piece.radius_m;
   Matrix3d R_WB;
   R_WB << x, y, z;
   const Vector3d towards_wall = std::sin(angle) * y - std::cos(angle) * z;
@@ -71,7 +72,8 @@ class BallInPipe : public Motion {
         field_(*context.route, *context.flow, context.water, context.gravity_W.norm(), context.ball.radius_m),
         coefficients_(CalcFluidLoadCoefficients(context.ball, context.water,
                                                 context.route->pieces().front().radius_m, context.gravity_W)),
-        world_(*context.route, MakeTubeBall(context.ball, coefficients_), rate_, MakeStart(context),
+        world_(*context.route, MakeTubeBall(context.ball, coefficients_), rate_,
+               MakeStart(context, context.lateral_sd_m),
                [this](const BallInstant& ball) { return EvalLoad(ball); }) {
     Publish();
     progress_m_ = state_.chainage_m;
@@ -80,6 +82,7 @@ class BallInPipe : public Motion {
   Rate rate() const override { return rate_; }
   const TruthState& state() const override { return state_; }
   MotionStatus status() const override { return status_; }
+  Vector3d planned_start_W() const override { return MakeStart(context_, 0).X_WB.p; }
 
   void Step() override {
     world_.Step();
@@ -110,7 +113,8 @@ class BallInPipe : public Motion {
     state_.chainage_m = ball.spot.chainage_m;
     state_.water_speed_m_s = water_.bulk_speed_m_s;
     state_.pressure_Pa = water_.pressure_Pa;
-    state_.contact = ball.normal_force_N > 0;
+    const double offset_m = (ball.X_WB.p - ball.spot.axis.p_W).norm();
+    state_.contact = piece.radius_m - context_.ball.radius_m - offset_m < kTouching_m;
   }
 
   void UpdateStatus() {
@@ -123,7 +127,8 @@ class BallInPipe : public Motion {
     const double offset_m = (state_.X_WB.p - spot.axis.p_W).norm();
     if (!(state_.X_WB.p.allFinite() && state_.f_WB_B.allFinite() && state_.w_WB_B.allFinite())) {
       status_ = MotionStatus::kNotFinite;
-    } else if (offset_m > context_.route->pieces()[spot.piece].radius_m) {
+    } else if (offset_m > context_.route->pieces()[spot.piece].radius_m ||
+               state_.chainage_m < -context_.ball.radius_m) {
       status_ = MotionStatus::kLeftNetwork;
     } else if (state_.chainage_m >= context_.route->length_m()) {
       status_ = MotionStatus::kArrived;
@@ -145,7 +150,8 @@ class BallInPipe : public Motion {
 };
 
 std::unique_ptr<Motion> Make(const Params& params, const MotionContext& context) {
-  Demand(context.route && context.flow, "a ball in a pipe needs a route and a flow");
+  if (!context.route) throw InputError("a ball in a pipe needs a network with at least one pipe", "kind");
+  Demand(context.flow != nullptr, "whoever builds a route solves its flow");
   RequireFit(context.ball, *context.route);
   return std::make_unique<BallInPipe>(static_cast<const BallInPipeParams&>(params), context);
 }

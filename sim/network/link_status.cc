@@ -106,10 +106,9 @@ LinkStatus StatusRules::FindCheckValve(LinkStatus status, double head_drop_m, do
 bool StatusRules::IsBlocked(const HydraulicState& state, int link, int tank_node, int other,
                             double outflow_m3_s) const {
   const TankNode& tank = model_.tanks[tank_node - model_.first_tank()];
-  const double level = state.head_m[tank_node] - tank.elevation_m;
-  const double drop = state.head_m[tank_node] - state.head_m[other];
-  const bool is_full = level >= tank.max_level_m - head_tolerance_m_ && !tank.can_overflow;
-  const bool is_empty = level <= tank.min_level_m + head_tolerance_m_;
+  const double head = state.head_m[tank_node], drop = head - state.head_m[other];
+  const bool is_full = head >= tank.elevation_m + tank.max_level_m && !tank.can_overflow;
+  const bool is_empty = head <= tank.elevation_m + tank.min_level_m;
   if (IsPump(model_, link)) {
     return (is_full && model_.To(link) == tank_node) || (is_empty && model_.From(link) == tank_node);
   }

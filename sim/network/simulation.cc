@@ -154,20 +154,27 @@ std::int64_t HydraulicSimulation::StepThroughRules(std::int64_t step_s) {
   return now - begin;
 }
 
-/// V += Q dt; a tank that a second would fill or empty is full or empty.
+/// V += Q dt; a tank that a second would fill is full, one that is drawn below its minimum is empty. EPANET's rule:
+/// within half a second's flow of its minimum a tank keeps the level it has.
 void HydraulicSimulation::FillTanks(std::int64_t step_s) {
   for (std::size_t i = 0; i < model_.tanks.size(); ++i) {
     const TankNode& tank = model_.tanks[i];
     const int node = model_.first_tank() + static_cast<int>(i);
     const double inflow = state_.inflow_m3_s[node - model_.junction_count()];
-    double volume = volume_m3_[i] + inflow * static_cast<double>(step_s);
+    if (inflow == 0) continue;
+    const double volume = volume_m3_[i] + inflow * static_cast<double>(step_s);
+    double level = 0;
     if (volume + inflow >= MaxTankVolume_m3(tank)) {
-      volume = MaxTankVolume_m3(tank);
+      volume_m3_[i] = MaxTankVolume_m3(tank);
+      level = tank.max_level_m;
     } else if (volume - inflow <= MinTankVolume_m3(tank)) {
-      volume = MinTankVolume_m3(tank);
+      volume_m3_[i] = MinTankVolume_m3(tank);
+      level = tank.min_level_m;
+    } else {
+      volume_m3_[i] = volume;
+      level = CalcTankLevel_m(tank, volume);
     }
-    volume_m3_[i] = volume;
-    state_.head_m[node] = tank.elevation_m + CalcTankLevel_m(tank, volume);
+    state_.head_m[node] = tank.elevation_m + level;
   }
 }
 

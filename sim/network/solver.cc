@@ -431,9 +431,9 @@ SolveReport HydraulicSolver::Solve(HydraulicState& state) {
       next_check += options.check_frequency;
     }
   }
+  CalcInflows(state);
   Balance(state, report);
   CalcHeadError(state, report);
-  CalcInflows(state);
   return report;
 }
 

@@ -37,6 +37,7 @@ class Triad {
         state_(MakeState(coefficients_, stream)) {}
 
   Vector3d DrawError(std::int64_t k) { return StepError(state_, k, stream_, coefficients_); }
+  Vector3d bias() const { return CalcBias(state_, coefficients_); }
   Vector3d Read(const Vector3d& truth, const Vector3d& error) const {
     return CalcReading(truth, error, coefficients_);
   }
@@ -62,20 +63,24 @@ class Imu final : public Sensor {
   Rate rate() const override { return rate_; }
   TrueTime DueTime(std::int64_t k) const override { return SampleTime(k + 1, rate_); }
   Pose X_BS() const override { return X_BS_; }
+  std::optional<ImuBias> bias() const override { return ImuBias{gyro_.bias(), accel_.bias()}; }
 
   SensorValue Sample(std::int64_t k, const TruthWindow& window) override {
     Demand(k == next_++, "an IMU is sampled once per interval, in order");
     const TrueTime due = DueTime(k);
-    const ImuInterval truth = CalcImuInterval(window, SampleTime(k, rate_), due, X_BS_.p, gravity_W_);
+    const TrueTime begin = SampleTime(k, rate_);
+    const ImuInterval truth = CalcImuInterval(window, begin, due, X_BS_.p);
+    const Vector3d gyro_error = gyro_.DrawError(k);
     const Vector3d accel_error = accel_.DrawError(k);
     ImuSample sample;
     sample.stamp = clock_.ToRobot(due);
-    sample.w_WS_S_rad_s = gyro_.Read(R_SB_ * truth.w_mean_rad_s, gyro_.DrawError(k));
+    sample.w_WS_S_rad_s = gyro_.Read(R_SB_ * truth.w_mean_rad_s, gyro_error);
     sample.f_WS_S_m_s2 = accel_.Read(R_SB_ * truth.f_mean_m_s2, accel_error);
     if (increments_) {
-      const double T = truth.duration_s;
-      sample.increments =
-          ImuIncrements{T * sample.w_WS_S_rad_s, T * accel_.Read(R_SB_ * (truth.dv_m_s / T), accel_error)};
+      const auto whole = CalcImuIncrements(window, begin, due, X_BS_.p, gravity_W_);
+      const double T = whole.duration_s;
+      sample.increments = ImuIncrements{T * gyro_.Read(R_SB_ * (whole.dtheta_rad / T), gyro_error),
+                                        T * accel_.Read(R_SB_ * (whole.dv_m_s / T), accel_error)};
     }
     return sample;
   }

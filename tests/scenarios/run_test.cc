@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/scenarios/small_scenario.h"
 
@@ -55,7 +57,8 @@ TEST_F(SmallRun, LeavesACompleteRunFolder) {
        {"run.json", "scenario.yaml", "estimator_input.yaml", "mav0/imu0/data.csv", "mav0/imu0/sensor.yaml",
         "mav0/mag0/data.csv", "mav0/pressure0/data.csv", "mav0/hydrophone0/audio.wav",
         "mav0/hydrophone0/sensor.yaml", "mav0/state_groundtruth_estimate0/data.csv", "truth/ball.csv",
-        "truth/leaks.csv", "estimates/ekf/track.csv", "estimates/ekf/trajectory.tum", "estimates/ekf/leaks.csv"}) {
+        "truth/leaks.csv", "estimates/ekf/track.csv", "estimates/ekf/trajectory.tum",
+        "estimates/ekf/leaks.csv"}) {
     EXPECT_TRUE(std::binary_search(files.begin(), files.end(), name)) << name;
   }
   const Json json = Json::parse(FileText(Folder() / "run.json"));
@@ -83,7 +86,8 @@ TEST_F(SmallRun, IsRewrittenByteForByteFromItsOwnScenario) {
     if (name == "run.json") continue;
     EXPECT_TRUE(FileText(Folder() / name) == FileText(other / "run" / name)) << name;
   }
-  EXPECT_EQ(WithoutTiming(FileText(Folder() / "run.json")), WithoutTiming(FileText(other / "run" / "run.json")));
+  EXPECT_EQ(WithoutTiming(FileText(Folder() / "run.json")),
+            WithoutTiming(FileText(other / "run" / "run.json")));
 }
 
 TEST_F(SmallRun, ReplayGivesTheSameBitsAsTheLoop) {
@@ -92,8 +96,9 @@ TEST_F(SmallRun, ReplayGivesTheSameBitsAsTheLoop) {
   options.run_folder = Folder();
   options.out = other / "replay";
   const RunResult replayed = Replay(options);
-  for (const char* name : {"estimates/ekf/track.csv", "estimates/ekf/trajectory.tum", "estimates/ekf/leaks.csv",
-                           "estimates/thesis/track.csv", "estimates/thesis/leaks.csv"}) {
+  for (const char* name :
+       {"estimates/ekf/track.csv", "estimates/ekf/trajectory.tum", "estimates/ekf/leaks.csv",
+        "estimates/thesis/track.csv", "estimates/thesis/leaks.csv"}) {
     EXPECT_TRUE(FileText(Folder() / name) == FileText(other / "replay" / name)) << name;
   }
   EXPECT_EQ(Json::parse(replayed.json)["estimators"], Json::parse(result_->json)["estimators"]);
@@ -108,7 +113,8 @@ TEST_F(SmallRun, OtherChannelsDoNotChangeWhenSensorsComeGoOrMove) {
   std::string reordered = without;
   reordered.insert(reordered.find("sensors:\n") + 9, mag);
   std::string more = text;
-  more.insert(more.find("sensors:\n") + 9, "  a_second_imu: {kind: imu, rate_Hz: 333, gyro: {noise_deg_s_sqrtHz: 0.1}}\n");
+  more.insert(more.find("sensors:\n") + 9,
+              "  a_second_imu: {kind: imu, rate_Hz: 333, gyro: {noise_deg_s_sqrtHz: 0.1}}\n");
   for (const std::string& variant : {without, reordered, more}) {
     const TemporaryFolder other;
     RunInto(ParseScenario(variant, "variant.yaml"), other / "run");
@@ -129,10 +135,99 @@ TEST_F(SmallRun, AnotherRunIndexDrawsOtherNoiseOverTheSameMotion) {
                FileText(other / "run" / "mav0/hydrophone0/audio.wav"));
 }
 
+/// Rows of a CSV file as numbers; what is no number becomes 0.
+std::vector<std::vector<double>> ReadRows(const fs::path& path) {
+  std::vector<std::vector<double>> rows;
+  std::stringstream text(FileText(path));
+  for (std::string line; std::getline(text, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::stringstream fields(line);
+    rows.emplace_back();
+    for (std::string field; std::getline(fields, field, ',');)
+      rows.back().push_back(std::strtod(field.c_str(), nullptr));
+  }
+  return rows;
+}
+
+constexpr char kMounted[] =
+    "sensors.imu0={kind: imu, rate_Hz: 400, lever_arm_m: [0.01, 0.002, -0.003], mounting_deg: [0, 0, 90], "
+    "gyro: {bias_deg_s: [1, 2, 3]}, accel: {bias_m_s2: [0.01, 0.02, 0.03]}}";
+
+TEST(Run, GroundTruthIsThatOfTheImuWhereItIsMounted) {
+  const TemporaryFolder folder;
+  RunInto(MakeSmallScenario({kMounted, "mission.time_limit_s=4"}), folder / "run");
+  const auto ball = ReadRows(folder / "run/truth/ball.csv");
+  const auto imu = ReadRows(folder / "run/mav0/state_groundtruth_estimate0/data.csv");
+  ASSERT_EQ(ball.size(), imu.size());
+  const Vector3d lever(0.01, 0.002, -0.003);
+  const Quaterniond q_BS = ExpSO3({0, 0, M_PI / 2});
+  for (std::size_t i = 0; i < ball.size(); i += 50) {
+    const auto& b = ball[i];
+    const auto& s = imu[i];
+    const Quaterniond q_WB(b[7], b[8], b[9], b[10]);
+    const Vector3d p_WS = Vector3d(b[4], b[5], b[6]) + q_WB * lever;
+    EXPECT_LT((Vector3d(s[1], s[2], s[3]) - p_WS).norm(), 1e-12);
+    EXPECT_LT(LogSO3(Quaterniond(s[4], s[5], s[6], s[7]).conjugate() * (q_WB * q_BS)).norm(), 1e-9);
+    EXPECT_LT((Vector3d(s[11], s[12], s[13]) - Vector3d(1, 2, 3) * M_PI / 180).norm(), 1e-12);
+    EXPECT_LT((Vector3d(s[14], s[15], s[16]) - Vector3d(0.01, 0.02, 0.03)).norm(), 1e-12);
+  }
+}
+
+TEST(Run, AFilterKnowsHowItsImuIsMounted) {
+  const TemporaryFolder folder;
+  const RunResult result = RunInto(
+      MakeSmallScenario({"sensors.imu0.lever_arm_m=[0.002, 0, 0]", "sensors.imu0.mounting_deg=[0, 0, 90]",
+                         "sensors.mag0.mounting_deg=[0, 0, 90]", "estimators.ekf.locator={kind: none}"}),
+      folder / "run");
+  ASSERT_TRUE(result.estimators[0].causal);
+  EXPECT_LT(result.estimators[0].causal->attitude_rmse_deg, 5);
+  EXPECT_LT(std::abs(result.estimators[0].causal->chainage_final_error_m), 0.05);
+}
+
+TEST(Run, ARobotClockBehindTrueTimeLosesNothingOfTheTrack) {
+  const TemporaryFolder folder;
+  RunInto(MakeSmallScenario({"ball={clock_offset_s: -500}", "mission.time_limit_s=4"}), folder / "run");
+  const auto track = ReadRows(folder / "run/estimates/ekf/track.csv");
+  ASSERT_GT(track.size(), 60u);  // 20 a second, but for the alignment
+  EXPECT_LT(track.front()[0], -499e9);
+  EXPECT_LT(track.front()[1], 0.1) << "the track begins at the launch";
+}
+
+TEST(Run, TellsTheFilterThePlannedLaunchNotTheDrawnOne) {
+  const TemporaryFolder folder;
+  RunInto(MakeSmallScenario({"mission.lateral_sd_mm=30", "mission.time_limit_s=1"}), folder / "run");
+  EXPECT_NE(FileText(folder / "run/estimator_input.yaml").find("p_W_m: [0, 0, -0.045]"), std::string::npos);
+}
+
+TEST(Run, ALeakTheBallNeverReachesHasNoPassage) {
+  const TemporaryFolder folder;
+  const RunResult result = RunInto(MakeSmallScenario({"mission.time_limit_s=2"}), folder / "run");
+  EXPECT_FALSE(result.leaks[0].t_cpa_ns);
+  EXPECT_FALSE(result.leaks[0].snr_dB);
+  ReplayOptions options;
+  options.run_folder = folder / "run";
+  options.out = folder / "replay";
+  const RunResult replayed = Replay(options);
+  EXPECT_EQ(replayed.status, "time_limit");
+  EXPECT_EQ(replayed.route_length_m, result.route_length_m);
+  EXPECT_EQ(replayed.duration_s, 2);
+}
+
+TEST(Run, AFilterWithoutItsSensorsIsRefused) {
+  const TemporaryFolder folder;
+  for (const char* left : {"sensors={mag0: {kind: magnetometer}}", "sensors={imu0: {kind: imu}}"}) {
+    EXPECT_THROW(RunInto(MakeSmallScenario({left}), folder / "run"), InputError) << left;
+  }
+  EXPECT_NO_THROW(
+      RunInto(MakeSmallScenario({"sensors={imu0: {kind: imu}}", "mission.time_limit_s=1",
+                                 "estimators={ekf: {kind: quaternion_ekf, locator: {kind: none}}}"}),
+              folder / "run"));
+}
+
 TEST(Run, KeepsTheDataOfABallThatStops) {
   const TemporaryFolder folder;
-  const RunResult result =
-      RunInto(MakeSmallScenario({"flow.inlet_L_s=0.1", "mission.stuck_after_s=5", "leaks=[]"}), folder / "run");
+  const RunResult result = RunInto(
+      MakeSmallScenario({"flow.inlet_L_s=0.1", "mission.stuck_after_s=5", "leaks=[]"}), folder / "run");
   EXPECT_EQ(result.status, "ball_stuck");
   EXPECT_EQ(Json::parse(FileText(folder / "run" / "run.json"))["status"], "ball_stuck");
   EXPECT_GT(fs::file_size(folder / "run" / "mav0/imu0/data.csv"), 10000u);

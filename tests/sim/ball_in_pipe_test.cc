@@ -257,13 +257,23 @@ TEST(BallInPipe, IsStuckWhenTheWaterHardlyMoves) {
   EXPECT_NEAR(motion->state().chainage_m, 0, 1e-6);
 }
 
-TEST(BallInPipe, RollingBackIsNoProgress) {
+TEST(BallInPipe, RollingBackOutOfTheLaunchEndLeavesTheNetwork) {
   Bench bench(MakePipeLine({{0, 0, 0}, {10, 0, 2}}), 0.02);
   bench.context.stuck_after_s = 3;
   const auto motion = bench.Launch();
   while (motion->status() == MotionStatus::kRunning) motion->Step();
-  EXPECT_EQ(motion->status(), MotionStatus::kBallStuck);
-  EXPECT_LT(motion->state().chainage_m, -0.1);
+  EXPECT_EQ(motion->status(), MotionStatus::kLeftNetwork);
+  EXPECT_LT(motion->state().chainage_m, -bench.context.ball.radius_m);
+  EXPECT_GT(motion->state().chainage_m, -bench.context.ball.radius_m - 0.01) << "noticed at once";
+}
+
+TEST(BallInPipe, PlansItsStartWithoutTheScatterOfTheLaunch) {
+  Bench bench(MakePipeLine({{0, 0, 0}, {10, 0, 0}}), 0.6);
+  bench.context.lateral_sd_m = 0.03;
+  const auto motion = bench.Launch();
+  const double drop_m = bench.context.route->pieces().front().radius_m - bench.context.ball.radius_m;
+  EXPECT_LT((motion->planned_start_W() - Vector3d(0, 0, -drop_m)).norm(), 1e-12);
+  EXPECT_GT((motion->state().X_WB.p - motion->planned_start_W()).norm(), 1e-4);
 }
 
 TEST(BallInPipe, RunsAreReproducedBitForBit) {

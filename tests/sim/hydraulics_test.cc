@@ -64,6 +64,13 @@ TEST(Hydraulics, HeadFallsByDarcyAndWeisbach) {
   EXPECT_NEAR(flow.timeline.Eval(0, 50, {}).velocity_m_s, 0.0176 / (std::numbers::pi * 0.075 * 0.075), 1e-12);
 }
 
+TEST(Hydraulics, RefusesAWaterColumnThatWouldPart) {
+  // 4 m up and 1.357 m of friction: the end stands 5.357 m of water, 52.46 kPa, below the inlet
+  const double fall_Pa = (4 + 2 * 0.6783) * 998.2 * 9.81;
+  EXPECT_NO_THROW(Solve(MakeTwoPipes(), {}, {0.0176, fall_Pa - 1e5 + 50}));
+  ExpectInputError("flow.inlet_pressure_Pa", {}, {0.0176, fall_Pa - 1e5 - 50});
+}
+
 TEST(Hydraulics, OrificeTakesTheTorricellianFlow) {
   // 5 mm, Cd 0.6 under 39.42676 m at g = 9.80665: EPANET 2.3.5 gives 0.3276061363 L/s;
   // half a digit of the head is 6e-8 of the flow, 2e-11 m3/s
