@@ -11,19 +11,19 @@ Duration FromSeconds(double seconds) {
   return Duration(std::llround(seconds * 1e9));
 }
 
+namespace {
+
+constexpr std::int64_t kNanoPerMicroHz = 1'000'000'000'000'000;
+
+}  // namespace
+
 Rate::Rate(double hertz) {
   Demand(hertz >= 1e-6 && hertz <= 1e9, "a rate lies between 1e-6 and 1e9 Hz");
   micro_Hz_ = std::llround(hertz * 1e6);
+  whole_period_ns_ = kNanoPerMicroHz % micro_Hz_ == 0 ? kNanoPerMicroHz / micro_Hz_ : 0;
 }
 
-Duration SampleOffset(std::int64_t k, Rate rate) {
-  constexpr std::int64_t kNanoPerMicroHz = 1'000'000'000'000'000;
-  const std::int64_t period = kNanoPerMicroHz / rate.micro_Hz();
-  std::int64_t whole = 0;
-  // most rates have a period of whole nanoseconds and need no 128-bit division
-  if (period * rate.micro_Hz() == kNanoPerMicroHz && !__builtin_mul_overflow(k, period, &whole)) {
-    return Duration(whole);
-  }
+Duration internal::RoundedSampleOffset(std::int64_t k, Rate rate) {
   __extension__ using Wide = __int128;
   const Wide numerator = static_cast<Wide>(k) * kNanoPerMicroHz;
   const Wide denominator = rate.micro_Hz();

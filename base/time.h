@@ -43,15 +43,27 @@ class Rate {
   std::int64_t micro_Hz() const { return micro_Hz_; }
   /// 1/rate in seconds.
   double Period_s() const { return 1e6 / static_cast<double>(micro_Hz_); }
+  /// The period where it is a whole number of nanoseconds, as for most rates; else 0.
+  std::int64_t whole_period_ns() const { return whole_period_ns_; }
   friend bool operator==(Rate, Rate) = default;
 
  private:
   std::int64_t micro_Hz_ = 0;
+  std::int64_t whole_period_ns_ = 0;
 };
 
-/// Time of sample k after sample 0: k / rate rounded to the nearest nanosecond. Never accumulates. Range:
-/// |k / rate| < 2^63 ns (292 years); aborts outside.
-Duration SampleOffset(std::int64_t k, Rate rate);
+namespace internal {
+Duration RoundedSampleOffset(std::int64_t k, Rate rate);
+}
+
+/// Time of sample k after sample 0: k / rate rounded to the nearest nanosecond. Never accumulates.
+inline Duration SampleOffset(std::int64_t k, Rate rate) {
+  std::int64_t whole = 0;
+  if (rate.whole_period_ns() > 0 && !__builtin_mul_overflow(k, rate.whole_period_ns(), &whole)) {
+    return Duration(whole);
+  }
+  return internal::RoundedSampleOffset(k, rate);
+}
 inline TrueTime SampleTime(std::int64_t k, Rate rate) { return TrueTime(SampleOffset(k, rate)); }
 
 /// The only converter between the two clocks: robot = true + offset + drift * true, drift > -1.

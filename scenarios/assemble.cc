@@ -12,6 +12,8 @@ namespace {
 
 const Route* RouteOf(const Assembly& assembly) { return assembly.route ? &*assembly.route : nullptr; }
 
+constexpr std::string_view kGroundtruthFolder = "state_groundtruth_estimate0";
+
 template <class Kind>
 const Kind& FindKind(const std::vector<Kind>& kinds, const std::string& name) {
   const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return k.name == name; });
@@ -48,6 +50,7 @@ std::vector<Leak> MakeLeaks(const Scenario& scenario, const Network& network) {
   for (std::size_t i = 0; i < scenario.leaks.size(); ++i) {
     const LeakEntry& entry = scenario.leaks[i];
     const std::string key = "leaks[" + std::to_string(i) + "]";
+    RequirePlainId(entry.id, key + ".id");
     const auto same = [&](const Leak& leak) { return leak.id == entry.id; };
     if (std::any_of(leaks.begin(), leaks.end(), same)) {
       throw InputError("'" + entry.id + "' is used twice; ids must be unique", key + ".id");
@@ -154,7 +157,12 @@ std::unique_ptr<Channel> MakeChannel(int index, const SensorEntry& entry, const 
 
 void BuildChannels(const Scenario& scenario, Assembly& assembly) {
   std::vector<const SensorEntry*> entries;
-  for (const SensorEntry& entry : scenario.sensors) entries.push_back(&entry);
+  for (const SensorEntry& entry : scenario.sensors) {
+    if (entry.name == kGroundtruthFolder) {
+      throw InputError("this name is taken by the ground truth; choose another one", "sensors." + entry.name);
+    }
+    entries.push_back(&entry);
+  }
   std::sort(entries.begin(), entries.end(), [](const auto* a, const auto* b) { return a->name < b->name; });
   for (const SensorEntry* entry : entries) {
     try {

@@ -18,8 +18,19 @@ std::string_view TakeField(std::string_view& rest) {
 
 }  // namespace
 
-CsvReader::CsvReader(const std::filesystem::path& path) : path_(path), file_(path, std::ios::binary) {
+CsvReader::CsvReader(const std::filesystem::path& path, std::string_view header)
+    : path_(path), file_(path, std::ios::binary) {
   if (!file_) throw InputError("cannot read this file", "", path.string());
+  while (!header.empty() && header.back() == '\n') header.remove_suffix(1);
+  if (!ReadLine() || line_ != header) Refuse("the first line must be '" + std::string(header) + "'");
+}
+
+bool CsvReader::ReadLine() {
+  if (!std::getline(file_, line_)) return false;
+  ++line_number_;
+  if (file_.eof()) Refuse("the file ends in the middle of a row");
+  if (!line_.empty() && line_.back() == '\r') line_.pop_back();
+  return true;
 }
 
 void CsvReader::Refuse(const std::string& problem) const {
@@ -27,16 +38,14 @@ void CsvReader::Refuse(const std::string& problem) const {
 }
 
 bool CsvReader::Next(std::int64_t& stamp_ns, std::span<double> values, std::string* text) {
-  do {
-    if (!std::getline(file_, line_)) return false;
-    ++line_number_;
-    if (!line_.empty() && line_.back() == '\r') line_.pop_back();
-  } while (line_.empty() || line_.front() == '#');
+  if (!ReadLine()) return false;
   std::string_view rest = line_;
   const std::string_view stamp = TakeField(rest);
   const auto [end, error] = std::from_chars(stamp.data(), stamp.data() + stamp.size(), stamp_ns);
   if (error != std::errc{} || end != stamp.data() + stamp.size())
     Refuse("the row does not begin with a stamp");
+  if (before_ns_ && stamp_ns <= *before_ns_) Refuse("stamps must rise from row to row");
+  before_ns_ = stamp_ns;
   if (text) *text = TakeField(rest);
   for (double& value : values) {
     const auto number = ParseNumber(TakeField(rest));

@@ -3,11 +3,13 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "base/number.h"
 #include "scenarios/csv_row.h"
 
 namespace piperun::scenarios {
 namespace {
 
+constexpr Duration kLongestSilence = std::chrono::hours(1);
 constexpr std::string_view kTrackHeader =
     "#timestamp [ns],chainage [m],sigma [m],p_WB_x [m],p_WB_y [m],p_WB_z [m],q_WB_w [],q_WB_x [],q_WB_y [],"
     "q_WB_z [],v_WB_x [m s^-1],v_WB_y [m s^-1],v_WB_z [m s^-1],bg_x [rad s^-1],bg_y [rad s^-1],bg_z [rad "
@@ -125,7 +127,12 @@ void EstimatorBank::SampleTracksBefore(RobotTime t) {
 }
 
 void EstimatorBank::Ingest(const Measurement& measurement) {
-  last_stamp_ = Stamp(measurement);
+  const RobotTime stamp = Stamp(measurement);
+  if (next_track_ && stamp - last_stamp_ > kLongestSilence) {
+    throw InputError("the record jumps ahead by " + FormatNumber(Seconds(stamp - last_stamp_)) +
+                     " s; allowed: up to one hour without any measurement");
+  }
+  last_stamp_ = stamp;
   if (!next_track_) next_track_ = FirstSampleFrom(last_stamp_, track_rate_);
   SampleTracksBefore(last_stamp_);
   for (const auto& member : members_) member->Ingest(measurement);

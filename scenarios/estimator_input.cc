@@ -117,7 +117,7 @@ void RecordedChannel::Visit(ParamVisitor& v) {
 void EstimatorInput::Visit(ParamVisitor& v) {
   static constexpr std::array<std::string_view, 1> kSchemas{"piperun.estimator_input/1"};
   v.Choice({"schema", "Version of this file format.", true}, kSchemas, schema);
-  v.Number({"track_rate_Hz", "How often the track is written."}, Range::Positive(), track_rate_Hz);
+  v.Number({"track_rate_Hz", "How often the track is written."}, {.min = 0.1, .max = 1e4}, track_rate_Hz);
   v.Items({"channels", "What was recorded."}, channels);
   v.Struct({"map", "Drawings of the pipeline."}, map);
   v.NamedItems({"estimators", "Filters, by name."}, estimators);

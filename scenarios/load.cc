@@ -12,10 +12,21 @@
 namespace piperun::scenarios {
 namespace {
 
+void RequireSensible(const ExpectEntry& entry, const std::string& key, const SourceMap& sources) {
+  const auto refuse = [&](const std::string& problem) { throw InputError(problem, key, sources.Find(key)); };
+  if (!entry.path.starts_with('/')) refuse("'" + entry.path + "' is no JSON pointer; it begins with '/'");
+  if (!entry.min && !entry.max && entry.equals.empty())
+    refuse("nothing is expected; give min, max or equals");
+  if (entry.min && entry.max && *entry.min > *entry.max) refuse("min lies above max");
+}
+
 Scenario ReadScenario(YamlDocument document, const std::vector<std::string>& overrides) {
   for (const std::string& assignment : overrides) document.Set(assignment);
   Scenario scenario;
   document.Read([&](ParamVisitor& v) { scenario.Visit(v); }, &scenario.sources);
+  for (std::size_t i = 0; i < scenario.expect.size(); ++i) {
+    RequireSensible(scenario.expect[i], "expect[" + std::to_string(i) + "]", scenario.sources);
+  }
   return scenario;
 }
 

@@ -5,19 +5,11 @@
 #include "acoustics/audio_file.h"
 #include "acoustics/hydrophone.h"
 #include "base/check.h"
+#include "scenarios/csv_headers.h"
 #include "scenarios/csv_row.h"
 
 namespace piperun::scenarios {
 namespace {
-
-constexpr std::string_view kImuHeader =
-    "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
-    "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n";
-constexpr std::string_view kIncrementsHeader =
-    "#timestamp [ns],dtheta_S_x [rad],dtheta_S_y [rad],dtheta_S_z [rad],"
-    "dv_S_x [m s^-1],dv_S_y [m s^-1],dv_S_z [m s^-1]\n";
-constexpr std::string_view kMagHeader = "#timestamp [ns],m_S_x [T],m_S_y [T],m_S_z [T]\n";
-constexpr std::string_view kPressureHeader = "#timestamp [ns],pressure [Pa]\n";
 
 std::int64_t Nanoseconds(RobotTime t) { return t.time_since_epoch().count(); }
 
@@ -152,14 +144,14 @@ class AudioChannelWriter : public MeasurementWriter {
 }  // namespace
 
 void AudioDescription::Visit(ParamVisitor& v) {
-  v.Text({"file", "The record, one channel."}, file);
-  v.Number({"rate_Hz", "Samples per second of the robot's clock."}, Range::Positive(), rate_Hz);
-  v.Integer({"block_samples", "Samples in one delivered block."}, 1, INT32_MAX, block_samples);
-  v.Integer({"bits", "Bits of the converter."}, 8, 32, bits);
-  v.Number({"full_scale_Pa", "Pressure of the largest code."}, Range::Positive(), full_scale_Pa);
-  v.Number({"scale_Pa", "Pressure of one count."}, Range::Positive(), scale_Pa);
-  v.Integer({"start_ns", "Stamp of sample 0."}, INT64_MIN, INT64_MAX, start_ns);
-  v.Integer({"clipped_samples", "Samples at the end of the scale."}, 0, INT64_MAX, clipped_samples);
+  v.Text({"file", "The record, one channel.", true}, file);
+  v.Number({"rate_Hz", "Samples per second of the robot's clock.", true}, Range::Between(1, 1e6), rate_Hz);
+  v.Integer({"block_samples", "Samples in one delivered block.", true}, 1, INT32_MAX, block_samples);
+  v.Integer({"bits", "Bits of the converter.", true}, 8, 32, bits);
+  v.Number({"full_scale_Pa", "Pressure of the largest code.", true}, Range::Positive(), full_scale_Pa);
+  v.Number({"scale_Pa", "Pressure of one count.", true}, Range::Positive(), scale_Pa);
+  v.Integer({"start_ns", "Stamp of sample 0.", true}, INT64_MIN, INT64_MAX, start_ns);
+  v.Integer({"clipped_samples", "Samples at the end of the scale.", true}, 0, INT64_MAX, clipped_samples);
 }
 
 std::unique_ptr<MeasurementWriter> MakeMeasurementWriter(const SensorEntry& entry, const Pose& X_BS,

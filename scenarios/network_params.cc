@@ -1,5 +1,7 @@
 #include "scenarios/network_params.h"
 
+#include <algorithm>
+
 #include "base/check.h"
 
 namespace piperun::scenarios {
@@ -20,7 +22,19 @@ int ResolveNode(const Network& network, const std::string& id, const std::string
 
 }  // namespace
 
+void RequirePlainId(const std::string& id, const std::string& key_path) {
+  const auto refused = [](unsigned char c) { return c < ' ' || c == ',' || c == '"' || c == '\''; };
+  if (id.empty() || id.front() == '#' || std::any_of(id.begin(), id.end(), refused)) {
+    throw InputError(
+        "an id is not empty, does not begin with '#' and holds no comma, quote or control character",
+        key_path);
+  }
+}
+
 Network MakeNetwork(const NetworkParams& params) {
+  for (std::size_t i = 0; i < params.pipes.size(); ++i) {
+    RequirePlainId(params.pipes[i].id, "network.pipes[" + std::to_string(i) + "].id");
+  }
   std::vector<NodeSpec> nodes;
   for (const NodeEntry& entry : params.nodes) nodes.push_back({entry.id, entry.position_m});
   std::vector<PipeSpec> pipes;

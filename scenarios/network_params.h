@@ -7,6 +7,10 @@
 
 namespace piperun::scenarios {
 
+/// Ids stand in CSV files and messages: not empty, and without commas, quotes and control characters. Throws
+/// InputError.
+void RequirePlainId(const std::string& id, const std::string& key_path);
+
 /// The network that the parameters describe. Throws InputError with key paths under "network".
 Network MakeNetwork(const NetworkParams& params);
 

@@ -5,7 +5,7 @@
 
 #include <cerrno>
 #include <fstream>
-#include <sstream>
+#include <iterator>
 #include <system_error>
 
 #include "base/check.h"
@@ -55,9 +55,10 @@ void WriteTextFile(const std::filesystem::path& path, std::string_view text) {
 
 std::string ReadTextFile(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  if (!file || !(text << file.rdbuf())) throw InputError("cannot read this file", "", path.string());
-  return text.str();
+  if (!file) throw InputError("cannot read this file", "", path.string());
+  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (file.bad()) throw InputError("cannot read this file", "", path.string());
+  return text;
 }
 
 }  // namespace piperun::scenarios

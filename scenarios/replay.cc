@@ -5,6 +5,7 @@
 
 #include "acoustics/audio_file.h"
 #include "base/check.h"
+#include "scenarios/csv_headers.h"
 #include "scenarios/csv_reader.h"
 #include "scenarios/measurement_writer.h"
 #include "scenarios/yaml_document.h"
@@ -41,8 +42,8 @@ RobotTime ToStamp(std::int64_t ns) { return RobotTime(Duration(ns)); }
 
 class CsvLog : public ChannelLog {
  public:
-  CsvLog(int channel, const fs::path& folder)
-      : ChannelLog(channel), path_(folder / "data.csv"), data_(path_) {}
+  CsvLog(int channel, const fs::path& folder, std::string_view header)
+      : ChannelLog(channel), path_(folder / "data.csv"), data_(path_, header) {}
 
  protected:
   std::string Name() const override { return path_.string(); }
@@ -52,9 +53,9 @@ class CsvLog : public ChannelLog {
 
 class ImuLog : public CsvLog {
  public:
-  ImuLog(int channel, const fs::path& folder) : CsvLog(channel, folder) {
+  ImuLog(int channel, const fs::path& folder) : CsvLog(channel, folder, kImuHeader) {
     const fs::path increments = folder / "increments.csv";
-    if (fs::exists(increments)) increments_ = std::make_unique<CsvReader>(increments);
+    if (fs::exists(increments)) increments_ = std::make_unique<CsvReader>(increments, kIncrementsHeader);
   }
 
  protected:
@@ -80,7 +81,7 @@ class ImuLog : public CsvLog {
 
 class MagLog : public CsvLog {
  public:
-  using CsvLog::CsvLog;
+  MagLog(int channel, const fs::path& folder) : CsvLog(channel, folder, kMagHeader) {}
 
  protected:
   bool Read() override {
@@ -94,7 +95,7 @@ class MagLog : public CsvLog {
 
 class PressureLog : public CsvLog {
  public:
-  using CsvLog::CsvLog;
+  PressureLog(int channel, const fs::path& folder) : CsvLog(channel, folder, kPressureHeader) {}
 
  protected:
   bool Read() override {
@@ -120,7 +121,15 @@ class AudioLog : public ChannelLog {
         description_(LoadDescription(folder)),
         path_(folder / description_.file),
         reader_(path_),
-        counts_(static_cast<std::size_t>(description_.block_samples)) {}
+        counts_(static_cast<std::size_t>(description_.block_samples)) {
+    const acoustics::AudioFormat& format = reader_.format();
+    if (static_cast<double>(format.rate_Hz) != description_.rate_Hz || format.bits != description_.bits) {
+      throw InputError("rate or bits are not those of its sensor.yaml", "", Name());
+    }
+    if (reader_.frames() % description_.block_samples != 0) {
+      throw InputError("the record does not end with a whole block; it has been cut short", "", Name());
+    }
+  }
 
  protected:
   std::string Name() const override { return path_.string(); }
@@ -163,7 +172,8 @@ MeasurementLog::MeasurementLog(const fs::path& run_folder, const EstimatorInput&
     : impl_(std::make_unique<Impl>()) {
   for (std::size_t i = 0; i < input.channels.size(); ++i) {
     auto log = OpenLog(static_cast<int>(i), input.channels[i], run_folder / "mav0" / input.channels[i].name);
-    if (log->Advance()) impl_->open.push_back(std::move(log));
+    if (!log->Advance()) throw InputError("the record is empty", "", "mav0/" + input.channels[i].name);
+    impl_->open.push_back(std::move(log));
   }
 }
 

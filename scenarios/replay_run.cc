@@ -46,12 +46,23 @@ std::vector<ToldEstimator> ChooseEstimators(const std::vector<ToldEstimator>& re
   return chosen;
 }
 
+/// The folder written must not be, hold, or lie in the folder read.
+void RequireApart(const fs::path& from, const fs::path& out) {
+  const std::string a = (fs::weakly_canonical(from) / "").string(),
+                    b = (fs::weakly_canonical(out) / "").string();
+  if (a.starts_with(b) || b.starts_with(a)) {
+    throw InputError("this would write over the record it reads; choose another folder", "--out",
+                     out.string());
+  }
+}
+
 }  // namespace
 
 RunResult Replay(const ReplayOptions& options) {
   const auto begin = StartWatch();
   const fs::path& from = options.run_folder;
   if (!fs::is_directory(from)) throw InputError("there is no such run folder", "", from.string());
+  RequireApart(from, options.out);
   EstimatorInput input = LoadEstimatorInput((from / "estimator_input.yaml").string());
   input.estimators = ChooseEstimators(input.estimators, options.estimators);
   const Scenario scenario = LoadScenario((from / "scenario.yaml").string());

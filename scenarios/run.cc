@@ -83,7 +83,10 @@ class RunLoop {
         input_(MakeEstimatorInput(scenario, assembly)),
         bank_(input_, folder.staging() / "estimates", [this](RobotTime t) { return TruthAt(t); }),
         truth_file_(folder.staging() / "truth" / "ball.csv") {
-    for (const auto& channel : assembly.channels) lookahead_ = std::max(lookahead_, channel->lookahead());
+    for (const auto& channel : assembly.channels) {
+      lookahead_ = std::max(lookahead_, channel->lookahead());
+      due_.push_back(channel->due());
+    }
     WriteTextFile(folder.staging() / "scenario.yaml", WriteScenario(scenario));
     WriteTextFile(folder.staging() / "estimator_input.yaml",
                   WriteYaml([this](ParamVisitor& v) { input_.Visit(v); }));
@@ -121,17 +124,12 @@ class RunLoop {
   /// All measurements complete by `horizon`, by time and then channel name.
   void DeliverUntil(TrueTime horizon) {
     while (true) {
-      std::size_t first = assembly_.channels.size();
-      TrueTime due = horizon + Duration(1);
-      for (std::size_t i = 0; i < assembly_.channels.size(); ++i) {
-        if (assembly_.channels[i]->due() < due) {
-          first = i;
-          due = assembly_.channels[i]->due();
-        }
-      }
-      if (first == assembly_.channels.size()) return;
-      const Measurement& measurement = assembly_.channels[first]->Take(window_);
-      writers_[first]->Write(measurement);
+      const auto first = std::min_element(due_.begin(), due_.end());
+      if (first == due_.end() || *first > horizon) return;
+      const auto i = static_cast<std::size_t>(first - due_.begin());
+      const Measurement& measurement = assembly_.channels[i]->Take(window_);
+      *first = assembly_.channels[i]->due();
+      writers_[i]->Write(measurement);
       bank_.Ingest(measurement);
     }
   }
@@ -163,6 +161,7 @@ class RunLoop {
   EstimatorBank bank_;
   std::filesystem::path truth_file_;
   Duration lookahead_{0};
+  std::vector<TrueTime> due_;  ///< of each channel's next measurement
 };
 
 void DescribeRoute(const Assembly& assembly, RunResult& result) {

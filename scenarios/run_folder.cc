@@ -1,5 +1,7 @@
 #include "scenarios/run_folder.h"
 
+#include <fcntl.h>
+#include <stdio.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -30,7 +32,7 @@ fs::path MakeStagingFolder(const fs::path& final_path) {
 
 }  // namespace
 
-RunFolder::RunFolder(const fs::path& final_path, bool force) : final_path_(final_path) {
+RunFolder::RunFolder(const fs::path& final_path, bool force) : final_path_(final_path), force_(force) {
   if (final_path_.filename().empty()) final_path_ = final_path_.parent_path();  // "out/"
   if (final_path_.empty()) throw InputError("an output folder needs a name", "--out");
   if (fs::exists(final_path_) && !force) {
@@ -55,12 +57,23 @@ fs::path RunFolder::Folder(const fs::path& relative) const {
 }
 
 void RunFolder::Commit() {
-  const fs::path old = staging_.string() + ".old";
-  const bool replaces = fs::exists(final_path_);
-  if (replaces) fs::rename(final_path_, old);
-  fs::rename(staging_, final_path_);
-  committed_ = true;
-  if (replaces) fs::remove_all(old);
+  const auto rename_with = [this](unsigned int flags) {
+    return ::renameat2(AT_FDCWD, staging_.c_str(), AT_FDCWD, final_path_.c_str(), flags) == 0;
+  };
+  if (rename_with(RENAME_NOREPLACE)) {
+    committed_ = true;
+    return;
+  }
+  if (errno != EEXIST)
+    throw std::system_error(errno, std::generic_category(), "cannot write " + final_path_.string());
+  if (!force_) {
+    throw InputError("another run has taken this name meanwhile; choose another one", "--out",
+                     final_path_.string());
+  }
+  // the old folder takes the temporary name, and goes with it
+  if (!rename_with(RENAME_EXCHANGE)) {
+    throw std::system_error(errno, std::generic_category(), "cannot replace " + final_path_.string());
+  }
 }
 
 }  // namespace piperun::scenarios

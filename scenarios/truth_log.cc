@@ -7,6 +7,7 @@
 
 #include "base/check.h"
 #include "base/number.h"
+#include "scenarios/csv_headers.h"
 #include "scenarios/csv_reader.h"
 
 namespace piperun::scenarios {
@@ -36,7 +37,8 @@ TrackTruth Blend(const TruthRow& a, const TruthRow& b, TrueTime t) {
 }  // namespace
 
 struct TruthLog::Impl {
-  explicit Impl(const std::filesystem::path& file) : reader(file), before(ReadRow(reader)), after(before) {}
+  explicit Impl(const std::filesystem::path& file)
+      : reader(file, kBallHeader), before(ReadRow(reader)), after(before) {}
   CsvReader reader;
   std::optional<TruthRow> before;
   std::optional<TruthRow> after;

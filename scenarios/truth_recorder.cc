@@ -3,16 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenarios/csv_headers.h"
 #include "scenarios/csv_row.h"
 
 namespace piperun::scenarios {
 namespace {
 
-constexpr std::string_view kBallHeader =
-    "#timestamp [ns],pipe,s [m],chainage [m],p_WB_x [m],p_WB_y [m],p_WB_z [m],q_WB_w [],q_WB_x [],q_WB_y [],"
-    "q_WB_z [],v_WB_x [m s^-1],v_WB_y [m s^-1],v_WB_z [m s^-1],w_WB_B_x [rad s^-1],w_WB_B_y [rad s^-1],"
-    "w_WB_B_z [rad s^-1],f_WB_B_x [m s^-2],f_WB_B_y [m s^-2],f_WB_B_z [m s^-2],water_speed [m s^-1],contact "
-    "[]\n";
 constexpr std::string_view kGroundtruthHeader =
     "#timestamp,p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z [],"
     "v_RS_R_x [m s^-1],v_RS_R_y [m s^-1],v_RS_R_z [m s^-1],b_w_RS_S_x [rad s^-1],b_w_RS_S_y [rad s^-1],"

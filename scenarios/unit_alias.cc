@@ -1,5 +1,7 @@
 #include "scenarios/unit_alias.h"
 
+#include <algorithm>
+#include <iterator>
 #include <numbers>
 
 namespace piperun::scenarios {
@@ -14,8 +16,11 @@ struct Spelling {
   double factor;
 };
 
-// Longer SI suffixes stand before the shorter ones they end in.
+// Longer SI suffixes stand before the shorter ones they end in; those that are no plain unit have no other
+// spelling.
 constexpr Spelling kSpellings[] = {
+    {"_dB_m", "", 1},
+    {"_s_m_rad", "", 1},
     {"_rad_s2_sqrtHz", "_deg_s2_sqrtHz", kDegree},
     {"_rad_s_sqrtHz", "_deg_s_sqrtHz", kDegree},
     {"_m_s2_sqrtHz", "_ug_sqrtHz", 1e-6 * kStandardGravity},
@@ -43,10 +48,25 @@ std::vector<UnitAlias> FindUnitAliases(std::string_view si_key) {
   for (const Spelling& spelling : kSpellings) {
     if (!si_key.ends_with(spelling.si) || (!suffix.empty() && spelling.si != suffix)) continue;
     suffix = spelling.si;
+    if (spelling.other.empty()) continue;
     const std::string_view stem = si_key.substr(0, si_key.size() - suffix.size());
     aliases.push_back({std::string(stem) + std::string(spelling.other), spelling.factor});
   }
   return aliases;
+}
+
+bool AreSpellingsOfOne(std::string_view a, std::string_view b) {
+  const auto spells = [](std::string_view si_key, std::string_view key) {
+    const auto aliases = FindUnitAliases(si_key);
+    return si_key == key || std::any_of(aliases.begin(), aliases.end(),
+                                        [&](const UnitAlias& alias) { return alias.key == key; });
+  };
+  if (spells(a, b) || spells(b, a)) return true;
+  return std::any_of(std::begin(kSpellings), std::end(kSpellings), [&](const Spelling& s) {
+    if (s.other.empty() || !a.ends_with(s.other)) return false;
+    const std::string si_key = std::string(a.substr(0, a.size() - s.other.size())) + std::string(s.si);
+    return spells(si_key, a) && spells(si_key, b);
+  });
 }
 
 }  // namespace piperun::scenarios

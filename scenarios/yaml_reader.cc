@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
-#include <sstream>
 
 #include "base/check.h"
 #include "base/number.h"
 #include "scenarios/key_path.h"
 #include "scenarios/nearest_name.h"
+#include "scenarios/output_file.h"
 #include "scenarios/unit_alias.h"
 #include "scenarios/yaml_document.h"
 
@@ -311,6 +310,16 @@ YAML::Node Descend(const YAML::Node& parent, const KeyStep& step, const std::str
   return YAML::Node(parent)[step.key];
 }
 
+/// An override replaces the file's value in whatever unit that is given.
+void DropOtherSpellings(YAML::Node map, const std::string& key) {
+  std::vector<std::string> others;
+  for (const auto& entry : map) {
+    const std::string name = entry.first.Scalar();
+    if (name != key && AreSpellingsOfOne(name, key)) others.push_back(name);
+  }
+  for (const std::string& name : others) map.remove(name);
+}
+
 }  // namespace
 
 struct YamlDocument::Impl {
@@ -321,7 +330,11 @@ struct YamlDocument::Impl {
 YamlDocument::YamlDocument(const std::string& text, std::string name) : impl_(std::make_unique<Impl>()) {
   impl_->name = std::move(name);
   try {
-    impl_->root = YAML::Load(text);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.empty()) throw InputError("this file is empty", "", impl_->name);
+    if (documents.size() > 1)
+      throw InputError("this file holds more than one YAML document", "", impl_->name);
+    impl_->root = documents.front();
   } catch (const YAML::Exception& e) {
     const std::string line = e.mark.is_null() ? "" : ":" + std::to_string(e.mark.line + 1);
     throw InputError("this is not YAML: " + e.msg, "", impl_->name + line);
@@ -330,10 +343,7 @@ YamlDocument::YamlDocument(const std::string& text, std::string name) : impl_(st
 }
 
 YamlDocument YamlDocument::FromFile(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  if (!file || !(text << file.rdbuf())) throw InputError("cannot read this file", "", path);
-  return YamlDocument(text.str(), path);
+  return YamlDocument(ReadTextFile(path), path);
 }
 
 YamlDocument::~YamlDocument() = default;
@@ -354,8 +364,14 @@ void YamlDocument::Set(const std::string& assignment) {
   }
   value.SetTag(kOverrideTag);
   YAML::Node node = impl_->root;
-  for (const KeyStep& step : SplitKeyPath(path)) node.reset(Descend(node, step, path));
+  YAML::Node parent;
+  const std::vector<KeyStep> steps = SplitKeyPath(path);
+  for (const KeyStep& step : steps) {
+    parent.reset(node);
+    node.reset(Descend(node, step, path));
+  }
   node = value;
+  if (parent.IsMap()) DropOtherSpellings(parent, steps.back().key);
 }
 
 void YamlDocument::Read(const VisitFunction& visit, SourceMap* sources) const {

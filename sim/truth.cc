@@ -1,6 +1,6 @@
 #include "sim/truth.h"
 
-#include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/check.h"
@@ -38,23 +38,15 @@ TruthState InterpolateStep(const TruthState& a, const TruthState& b, double x, d
 
 }  // namespace
 
-TruthWindow::TruthWindow(Rate rate, std::size_t capacity) : rate_(rate), ring_(capacity) {
+TruthWindow::TruthWindow(Rate rate, std::size_t capacity)
+    : rate_(rate), ring_(std::bit_ceil(capacity)), mask_(ring_.size() - 1) {
   Demand(capacity >= 2, "a truth window holds at least two steps");
 }
 
 void TruthWindow::Push(const TruthState& state) {
   Demand(state.time == SampleTime(next_, rate_), "truth arrives step by step, beginning with step 0");
-  ring_[static_cast<std::size_t>(next_) % ring_.size()] = state;
+  ring_[static_cast<std::size_t>(next_) & mask_] = state;
   ++next_;
-}
-
-std::int64_t TruthWindow::first() const {
-  return std::max<std::int64_t>(0, next_ - static_cast<std::int64_t>(ring_.size()));
-}
-
-const TruthState& TruthWindow::at(std::int64_t step) const {
-  Demand(step >= first() && step <= last(), "this step is not in the truth window");
-  return ring_[static_cast<std::size_t>(step) % ring_.size()];
 }
 
 std::int64_t TruthWindow::StepAt(TrueTime t) const {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
+#include "base/check.h"
 #include "base/pose.h"
 #include "base/time.h"
 
@@ -34,21 +36,29 @@ struct TruthState {
 /// The last few truth states, by step number, for sensors to sample from. Step k is at SampleTime(k, rate).
 class TruthWindow {
  public:
+  /// Holds at least `capacity` steps.
   TruthWindow(Rate rate, std::size_t capacity);
 
   void Push(const TruthState& state);  ///< steps arrive in order, beginning with step 0
   Rate rate() const { return rate_; }
-  std::int64_t first() const;  ///< oldest step still held
+  /// Oldest step still held.
+  std::int64_t first() const {
+    return std::max<std::int64_t>(0, next_ - static_cast<std::int64_t>(ring_.size()));
+  }
   std::int64_t last() const { return next_ - 1; }
   /// Aborts when `step` is not in [first, last]: the window was made too small.
-  const TruthState& at(std::int64_t step) const;
+  const TruthState& at(std::int64_t step) const {
+    Demand(step >= first() && step <= last(), "this step is not in the truth window");
+    return ring_[static_cast<std::size_t>(step) & mask_];
+  }
   TrueTime latest_time() const { return SampleTime(last(), rate_); }
   /// Last step at or before t.
   std::int64_t StepAt(TrueTime t) const;
 
  private:
   Rate rate_;
-  std::vector<TruthState> ring_;
+  std::vector<TruthState> ring_;  // a power of two of them
+  std::size_t mask_;
   std::int64_t next_ = 0;
 };
 

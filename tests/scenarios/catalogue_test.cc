@@ -30,7 +30,8 @@ TEST(Catalogue, WhatEstimatorsAreToldHoldsNoLeak) {
   EstimatorInput input = MakeEstimatorInput(scenario, *assembly);
   std::string text = WriteYaml([&](ParamVisitor& v) { input.Visit(v); });
   const std::string own_parameter = "max_leaks";  // of a locator: how many to report, not how many there are
-  for (std::size_t at; (at = text.find(own_parameter)) != std::string::npos;) text.erase(at, own_parameter.size());
+  for (std::size_t at; (at = text.find(own_parameter)) != std::string::npos;)
+    text.erase(at, own_parameter.size());
   EXPECT_EQ(text.find("leak"), std::string::npos);
   EXPECT_EQ(text.find("hole_diameter"), std::string::npos);
   EXPECT_EQ(text.find("14.6"), std::string::npos) << "the place of leak L1";
@@ -63,8 +64,9 @@ TEST(Materials, AreReadFromTheLibrary) {
 
 TEST(Reference, NamesEveryKind) {
   const std::string text = WriteReference();
-  for (const char* kind : {"`ball_in_pipe`", "`scripted`", "`imu`", "`magnetometer`", "`pressure`", "`hydrophone`",
-                           "`turbulent_jet`", "`quaternion_ekf`", "`mission.stuck_after_s`"}) {
+  for (const char* kind :
+       {"`ball_in_pipe`", "`scripted`", "`imu`", "`magnetometer`", "`pressure`", "`hydrophone`",
+        "`turbulent_jet`", "`quaternion_ekf`", "`mission.stuck_after_s`"}) {
     EXPECT_NE(text.find(kind), std::string::npos) << kind;
   }
 }

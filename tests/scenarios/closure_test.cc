@@ -1,4 +1,5 @@
-// The thirty-line integrator that knows nothing of piperun: it reads the run folder of the scenario `closure`.
+// The thirty-line integrator that knows nothing of piperun: it reads the run folder of the scenario
+// `closure`.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +19,8 @@ std::vector<std::vector<double>> ReadNumbers(const std::filesystem::path& path) 
     if (line.empty() || line[0] == '#') continue;
     std::stringstream fields(line);
     rows.emplace_back();
-    for (std::string field; std::getline(fields, field, ',');) rows.back().push_back(std::strtod(field.c_str(), nullptr));
+    for (std::string field; std::getline(fields, field, ',');)
+      rows.back().push_back(std::strtod(field.c_str(), nullptr));
   }
   return rows;
 }
@@ -43,7 +45,8 @@ TEST(Closure, IntegratedIncrementsReturnTheTrack) {
     p += v * dt;
     if (dtheta.norm() > 0) R = R * Eigen::AngleAxisd(dtheta.norm(), dtheta.normalized()).toRotationMatrix();
   }
-  const auto end = std::find_if(truth.begin(), truth.end(), [&](const auto& row) { return row[0] == imu.back()[0]; });
+  const auto end =
+      std::find_if(truth.begin(), truth.end(), [&](const auto& row) { return row[0] == imu.back()[0]; });
   ASSERT_NE(end, truth.end());
   const std::vector<double>& e = *end;
   const double error_m = (p - Eigen::Vector3d(e[4], e[5], e[6])).norm();

@@ -233,6 +233,75 @@ TEST(Run, KeepsTheDataOfABallThatStops) {
   EXPECT_GT(fs::file_size(folder / "run" / "mav0/imu0/data.csv"), 10000u);
 }
 
+TEST(Run, ReplayRefusesToWriteOverWhatItReads) {
+  const TemporaryFolder folder;
+  RunInto(MakeSmallScenario({"mission.time_limit_s=1"}), folder / "run");
+  ReplayOptions options;
+  options.run_folder = folder / "run";
+  options.force = true;
+  for (const char* out : {"run", "run/inside", "../"}) {
+    options.out = folder / out;
+    EXPECT_THROW(Replay(options), InputError) << out;
+  }
+  EXPECT_TRUE(fs::exists(folder / "run/mav0/imu0/data.csv"));
+}
+
+TEST(Run, ReplayRefusesADamagedRecord) {
+  const TemporaryFolder folder;
+  const auto replay_with = [&](const std::string& file,
+                               const std::function<std::string(const std::string&)>& damage) {
+    RunOptions options;
+    options.out = folder / "run";
+    options.force = true;
+    scenarios::Run(MakeSmallScenario({"mission.time_limit_s=2"}), options);
+    WriteTextFile(options.out / file, damage(FileText(options.out / file)));
+    ReplayOptions replay;
+    replay.run_folder = options.out;
+    replay.out = folder / "replay";
+    Replay(replay);
+  };
+  const auto cut = [](const std::string& text) { return text.substr(0, text.size() - 7); };
+  const auto header_only = [](const std::string& text) { return text.substr(0, text.find('\n') + 1); };
+  const auto no_header = [](const std::string& text) { return text.substr(text.find('\n') + 1); };
+  const auto first_row_twice = [](const std::string& text) {
+    const std::size_t row = text.find('\n') + 1, next = text.find('\n', row) + 1;
+    return text.substr(0, next) + text.substr(row);
+  };
+  for (const auto& damage : std::vector<std::function<std::string(const std::string&)>>{
+           cut, header_only, no_header, first_row_twice}) {
+    EXPECT_THROW(replay_with("mav0/imu0/data.csv", damage), InputError);
+  }
+  EXPECT_THROW(
+      replay_with("mav0/hydrophone0/audio.wav", [](const std::string& wav) { return wav.substr(0, 60'000); }),
+      InputError);
+  const auto without = [](const std::string& key) {
+    return [key](const std::string& yaml) {
+      const std::size_t at = yaml.find(key);
+      return yaml.substr(0, at) + yaml.substr(yaml.find('\n', at) + 1);
+    };
+  };
+  EXPECT_THROW(replay_with("mav0/hydrophone0/sensor.yaml", without("scale_Pa")), InputError);
+  EXPECT_THROW(replay_with("mav0/hydrophone0/sensor.yaml",
+                           [](const std::string&) { return std::string("schema: x\n"); }),
+               InputError);
+  EXPECT_FALSE(fs::exists(folder / "replay"));
+}
+
+TEST(Run, RefusesNamesThatWouldBreakItsFiles) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(
+      RunInto(MakeSmallScenario({"sensors.state_groundtruth_estimate0={kind: imu}"}), folder / "run"),
+      InputError);
+  EXPECT_THROW(RunInto(MakeSmallScenario({"leaks.L1.id='a,b'"}), folder / "run"), InputError);
+  EXPECT_FALSE(fs::exists(folder / "run"));
+}
+
+TEST(Run, RefusesExpectationsThatSayNothing) {
+  EXPECT_THROW(MakeSmallScenario({"expect=[{path: /status}]"}), InputError);
+  EXPECT_THROW(MakeSmallScenario({"expect=[{path: status, equals: ok}]"}), InputError);
+  EXPECT_THROW(MakeSmallScenario({"expect=[{path: /a, min: 1, max: 0}]"}), InputError);
+}
+
 TEST(Run, EndsAtTheTimeLimit) {
   const TemporaryFolder folder;
   const RunResult result = RunInto(MakeSmallScenario({"mission.time_limit_s=2"}), folder / "run");

@@ -55,10 +55,10 @@ TEST(TrackScorer, MeasuresErrorsWithoutAlignment) {
   const auto score = scorer.Score();
   ASSERT_TRUE(score);
   EXPECT_NEAR(score->attitude_rmse_deg, tilt * 180 / 3.14159265358979, 1e-9);
-  EXPECT_NEAR(score->position_rmse_m, 0.5, 1e-12);       // 3-4-5
+  EXPECT_NEAR(score->position_rmse_m, 0.5, 1e-12);  // 3-4-5
   EXPECT_NEAR(score->chainage_rmse_m, 0.1, 1e-12);
   EXPECT_NEAR(score->chainage_final_error_m, -0.1, 1e-12);  // row 10 is even
-  EXPECT_NEAR(score->final_error_percent, 5, 1e-9);      // 0.5 m of 10 m
+  EXPECT_NEAR(score->final_error_percent, 5, 1e-9);         // 0.5 m of 10 m
   EXPECT_NEAR(score->nees_mean, tilt * tilt / 1e-4 / 3, 1e-9);
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "scenarios/load.h"
+#include "scenarios/unit_alias.h"
 #include "tests/scenarios/small_scenario.h"
 
 namespace piperun::scenarios {
@@ -80,7 +81,8 @@ TEST(YamlDocument, ReadsEveryTypeOfField) {
 }
 
 TEST(YamlDocument, WritesWhatItReads) {
-  Sample s = Read("rate_deg_s: 33.3\nlimit: 0.1\ntext: 'true: #1 \"q\"'\ntable: [[0.1, 1e-300]]\nparts: [{id: a b}]\n");
+  Sample s = Read(
+      "rate_deg_s: 33.3\nlimit: 0.1\ntext: 'true: #1 \"q\"'\ntable: [[0.1, 1e-300]]\nparts: [{id: a b}]\n");
   const auto visit = [&](ParamVisitor& v) { s.Visit(v); };
   const std::string text = WriteYaml(visit);
   Sample again = Read(text);
@@ -94,6 +96,14 @@ TEST(YamlDocument, ConvertsOtherUnitsOnce) {
   EXPECT_DOUBLE_EQ(Read("rate_deg_s: 180").rate_rad_s, std::numbers::pi);
   EXPECT_DOUBLE_EQ(Read("rate_deg_h: 648000").rate_rad_s, std::numbers::pi);
   EXPECT_EQ(Read("vector_mm: [1000, 0, 0]").vector, Vector3d(1, 0, 0));
+}
+
+TEST(UnitAlias, LeavesKeysAloneThatAreNoPlainUnit) {
+  EXPECT_TRUE(FindUnitAliases("slope_dB_m").empty());
+  EXPECT_TRUE(FindUnitAliases("poses_s_m_rad").empty());
+  EXPECT_TRUE(FindUnitAliases("rate_Hz").empty());
+  EXPECT_TRUE(AreSpellingsOfOne("radius_mm", "radius_cm"));
+  EXPECT_FALSE(AreSpellingsOfOne("radius_mm", "diameter_mm"));
 }
 
 TEST(YamlDocument, RefusesAValueGivenInTwoUnits) {
@@ -128,7 +138,8 @@ TEST(YamlDocument, RefusesWrongTypes) {
 TEST(YamlDocument, RefusesValuesOutOfRange) {
   EXPECT_EQ(ErrorOf("rate_rad_s: 11"), "test.yaml:1: rate_rad_s: 11 is out of range; allowed: [-10, 10]");
   EXPECT_EQ(ErrorOf("count: 10"), "test.yaml:1: count: 10 is out of range; allowed: 0 to 9");
-  EXPECT_NE(ErrorOf("rate_deg_s: 3600").find("3600 is out of range; allowed: [-10, 10] (in SI"), std::string::npos);
+  EXPECT_NE(ErrorOf("rate_deg_s: 3600").find("3600 is out of range; allowed: [-10, 10] (in SI"),
+            std::string::npos);
 }
 
 TEST(YamlDocument, NamesAMissingKey) {
@@ -139,6 +150,17 @@ TEST(YamlDocument, RefusesWhatIsNotYaml) {
   EXPECT_NE(ErrorOf("a: [1, 2\nb: }").find("this is not YAML"), std::string::npos);
   EXPECT_EQ(ErrorOf("just words"), "test.yaml: this is not a YAML map of keys");
   EXPECT_THROW(YamlDocument::FromFile("does/not/exist.yaml"), InputError);
+}
+
+TEST(YamlDocument, AnOverrideReplacesTheValueInWhateverUnit) {
+  EXPECT_EQ(Read("rate_deg_s: 5", {"rate_rad_s=0.5"}).rate_rad_s, 0.5);
+  EXPECT_DOUBLE_EQ(Read("rate_rad_s: 5", {"rate_deg_s=180"}).rate_rad_s, std::numbers::pi);
+  EXPECT_DOUBLE_EQ(Read("rate_deg_h: 5", {"rate_deg_s=180"}).rate_rad_s, std::numbers::pi);
+}
+
+TEST(YamlDocument, RefusesEmptyFilesAndSecondDocuments) {
+  EXPECT_EQ(ErrorOf(""), "test.yaml: this file is empty");
+  EXPECT_EQ(ErrorOf("count: 1\n---\ncount: 2"), "test.yaml: this file holds more than one YAML document");
 }
 
 TEST(YamlDocument, OverridesByIndexAndById) {

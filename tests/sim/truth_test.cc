@@ -35,17 +35,17 @@ TEST(TruthWindow, FindsTheStepOfAnyNanosecond) {
 
 TEST(TruthWindow, KeepsTheLatestSteps) {
   const Rate rate(1000);
-  TruthWindow window(rate, 3);
+  TruthWindow window(rate, 3);  // rounded up to a power of two
   TruthState state;
-  for (std::int64_t k = 0; k < 5; ++k) {
+  for (std::int64_t k = 0; k < 7; ++k) {
     state.time = SampleTime(k, rate);
     state.chainage_m = static_cast<double>(k);
     window.Push(state);
   }
-  EXPECT_EQ(window.first(), 2);
-  EXPECT_EQ(window.last(), 4);
-  EXPECT_EQ(window.at(2).chainage_m, 2);
-  EXPECT_EQ(window.at(4).chainage_m, 4);
+  EXPECT_EQ(window.first(), 3);
+  EXPECT_EQ(window.last(), 6);
+  EXPECT_EQ(window.at(3).chainage_m, 3);
+  EXPECT_EQ(window.at(6).chainage_m, 6);
 }
 
 TEST(TruthWindowDeathTest, RefusesStepsItDoesNotHold) {

@@ -75,6 +75,8 @@ int Check(CheckArguments arguments, const Display& display) {
   if (arguments.scenarios.empty()) {
     for (const auto& file : scenarios::EmbeddedScenarios()) arguments.scenarios.emplace_back(file.name);
   }
+  for (const std::string& name : arguments.scenarios)
+    scenarios::LoadScenario(name, arguments.set);  // all or none
   const ScratchFolder scratch;
   std::vector<scenarios::CheckedScenario> checked;
   {

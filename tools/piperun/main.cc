@@ -4,7 +4,8 @@
 #include <signal.h>
 
 #include <CLI/CLI.hpp>
-#include <system_error>
+#include <cstdio>
+#include <stdexcept>
 
 #include "base/check.h"
 #include "scenarios/run.h"
@@ -24,6 +25,7 @@ void WatchSignals() {
   action.sa_handler = RequestStop;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGHUP, &action, nullptr);
   action.sa_handler = SIG_IGN;  // a file-size limit shall be a write error, not a death
   sigaction(SIGXFSZ, &action, nullptr);
 }
@@ -56,7 +58,10 @@ int RunApp(int argc, char** argv) {
 int Main(int argc, char** argv) {
   WatchSignals();
   try {
-    return RunApp(argc, argv);
+    const int exit_code = RunApp(argc, argv);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout))
+      throw std::runtime_error("cannot write to standard output");
+    return exit_code;
   } catch (const InputError& e) {
     fmt::print(stderr, "piperun: {}\n", e.what());
     return kWrongInput;

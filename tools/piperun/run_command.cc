@@ -17,16 +17,16 @@ struct RunArguments {
   std::string scenario;
   std::string out;
   bool force = false;
-  std::optional<std::int64_t> seed;
-  std::optional<std::int64_t> run;
+  std::string seed;
+  std::string run;
   std::vector<std::string> set;
   std::vector<std::string> estimators;
 };
 
 scenarios::Scenario Load(const RunArguments& arguments) {
   std::vector<std::string> overrides = arguments.set;
-  if (arguments.seed) overrides.push_back(fmt::format("seed={}", *arguments.seed));
-  if (arguments.run) overrides.push_back(fmt::format("run={}", *arguments.run));
+  if (!arguments.seed.empty()) overrides.push_back("seed=" + arguments.seed);
+  if (!arguments.run.empty()) overrides.push_back("run=" + arguments.run);
   scenarios::Scenario scenario = scenarios::LoadScenario(arguments.scenario, overrides);
   if (arguments.estimators.empty()) return scenario;
   std::vector<scenarios::EstimatorEntry> chosen;
