@@ -26,8 +26,7 @@ class BiquadCascade {
     for (std::size_t i = 0; i < other.size_; ++i) Append(other.sections_[i].c);
   }
   double Step(double x) {
-    for (std::size_t i = 0; i < size_; ++i) {
-      Section& s = sections_[i];
+    for (Section& s : sections_) {  // unused ones pass x on; a fixed count unrolls
       const double y = s.c.b0 * x + s.z1;
       s.z1 = s.c.b1 * x - s.c.a1 * y + s.z2;
       s.z2 = s.c.b2 * x - s.c.a2 * y;

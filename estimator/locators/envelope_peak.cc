@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "estimator/frame_locator.h"
@@ -44,6 +45,8 @@ class Recent {
   bool full() const { return next_ >= ring_.size(); }
   /// Age 0 is the newest.
   const T& Back(std::size_t age) const { return ring_[(next_ - 1 - age) % ring_.size()]; }
+  /// All of them, in no particular order.
+  std::span<const T> Values() const { return std::span<const T>(ring_).first(size()); }
 
  private:
   std::vector<T> ring_;
@@ -159,8 +162,8 @@ void EnvelopePeak::Follow(const Smoothed& now) {
 }
 
 double EnvelopePeak::Background_Pa() {
-  sorted_.resize(background_.size());
-  for (std::size_t i = 0; i < sorted_.size(); ++i) sorted_[i] = background_.Back(i);
+  const auto values = background_.Values();
+  sorted_.assign(values.begin(), values.end());
   const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
   std::nth_element(sorted_.begin(), middle, sorted_.end());
   return *middle;
