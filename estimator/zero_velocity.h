@@ -50,7 +50,8 @@ class RestDetector {
 /// accelerometer cannot tell rest from steady motion: `speed_gate_m_s` lets only a slow ball come to rest;
 /// `none` is the thesis' form. What the detector's delay would miss of a motion's onset has been integrated
 /// meanwhile, from at least kOnset_s before it is noticed. Chainage: projection on the map if there is one,
-/// else the length of the path. Its variance grows with (a_sd T^2 / 2)^2 over each motion of duration T.
+/// else the sum of each motion's straight displacement. Its variance grows with (a_sd T^2 / 2)^2 over each
+/// motion of duration T.
 class ZeroVelocityNavigator final : public PositionFilter {
  public:
   /// Keeps start.map by reference.

@@ -270,7 +270,7 @@ ChannelNeeds Needs(const Params& params) {
 
 FilterKind Kind() {
   return {"quaternion_ekf",
-          "Quaternion and gyro bias by an extended Kalman filter; position by rolling or between rests.",
+          "Attitude, gyro bias and scale by an extended Kalman filter; position by rolling or between rests.",
           MakeParams<QuaternionEkfParams>, Make, Needs};
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kWindow_dB = 12;     // a window reaches as far as the flattest roof falls by this
 constexpr double kBin_dB = 0.3;       // and a bin as far as the steepest one does
-constexpr double kApart_dB = 6;       // leaks closer together than this, on the flattest roof, are one
+constexpr double kApart_dB = 6;       // width, on the flattest roof, in which only the highest place is a leak
 constexpr double kRefineShare = 0.4;  // of the window: the top of the roof, where the leak drowns all else
 constexpr double kNeighbourShare = 0.45;  // of the way to the next leak
 constexpr double kBandShare = 0.5;        // of the ratio's roof that the band alone must show
