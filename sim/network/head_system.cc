@@ -1,7 +1,9 @@
 #include "sim/network/head_system.h"
 
 #include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
 #include <algorithm>
+#include <iterator>
 
 #include "base/check.h"
 
@@ -26,69 +28,114 @@ std::vector<int> FindRows(int n, const std::vector<std::pair<int, int>>& ends) {
   return {permutation.indices().data(), permutation.indices().data() + n};
 }
 
+void SortUnique(std::vector<int>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
 }  // namespace
 
 HeadSystem::HeadSystem(int junction_count, const std::vector<std::pair<int, int>>& ends)
-    : row_(FindRows(junction_count, ends)),
-      junction_(junction_count),
-      diagonal_(junction_count),
+    : size_(junction_count),
+      row_(FindRows(junction_count, ends)),
+      junction_(row_.size()),
       places_(ends.size()),
-      right_(junction_count),
-      solution_(junction_count) {
-  for (int i = 0; i < junction_count; ++i) junction_[row_[i]] = i;
-  BuildPattern(ends);
-  values_ = matrix_.valuePtr();
-  factors_.analyzePattern(matrix_);
-}
-
-void HeadSystem::BuildPattern(const std::vector<std::pair<int, int>>& ends) {
-  const int n = static_cast<int>(row_.size());
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i < n; ++i) entries.emplace_back(i, i, 1.0);
-  for (const auto& [from, to] : ends) {
-    if (from >= n || to >= n) continue;
-    const auto [low, high] = std::minmax(row_[from], row_[to]);
-    entries.emplace_back(low, high, 0.0);
-  }
-  matrix_.resize(n, n);
-  matrix_.setFromTriplets(entries.begin(), entries.end());
-  matrix_.makeCompressed();
-  for (int i = 0; i < n; ++i) diagonal_[i] = FindValue(row_[i], row_[i]);
+      diagonal_(row_.size() + 1),
+      right_(row_.size() + 1) {
+  for (int i = 0; i < size_; ++i) junction_[row_[i]] = i;
+  FindPattern(ends);
+  FindTargets();
+  lower_.resize(entry_row_.size() + 1);
   for (std::size_t k = 0; k < ends.size(); ++k) {
-    const auto& [from, to] = ends[k];
-    if (from < n) places_[k].from = diagonal_[from];
-    if (to < n) places_[k].to = diagonal_[to];
-    if (from < n && to < n) places_[k].off_diagonal = FindValue(row_[from], row_[to]);
+    const int from = ends[k].first < size_ ? row_[ends[k].first] : size_;
+    const int to = ends[k].second < size_ ? row_[ends[k].second] : size_;
+    const bool inside = from < size_ && to < size_;
+    places_[k] = {
+        inside ? FindEntry(std::max(from, to), std::min(from, to)) : static_cast<int>(entry_row_.size()),
+        from, to};
   }
 }
 
-int HeadSystem::FindValue(int row, int column) const {
-  const auto [low, high] = std::minmax(row, column);
-  const int* begin = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[high];
-  const int* end = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[high + 1];
-  const int* found = std::lower_bound(begin, end, low);
-  Demand(found != end && *found == low, "the pattern holds every link");
-  return static_cast<int>(found - matrix_.innerIndexPtr());
+/// Column k of L: the neighbours of k that come later, and what its children in the elimination tree hand on.
+void HeadSystem::FindPattern(const std::vector<std::pair<int, int>>& ends) {
+  std::vector<std::vector<int>> columns(row_.size());
+  for (const auto& [from, to] : ends) {
+    if (from >= size_ || to >= size_) continue;
+    const auto [low, high] = std::minmax(row_[from], row_[to]);
+    columns[low].push_back(high);
+  }
+  column_begin_ = {0};
+  for (int k = 0; k < size_; ++k) {
+    std::vector<int>& column = columns[k];
+    SortUnique(column);
+    entry_row_.insert(entry_row_.end(), column.begin(), column.end());
+    column_begin_.push_back(static_cast<int>(entry_row_.size()));
+    if (column.empty()) continue;
+    std::vector<int>& parent = columns[column.front()];
+    parent.insert(parent.end(), std::next(column.begin()), column.end());
+  }
+}
+
+void HeadSystem::FindTargets() {
+  for (int k = 0; k < size_; ++k) {
+    for (int p = column_begin_[k]; p < column_begin_[k + 1]; ++p) {
+      for (int q = p + 1; q < column_begin_[k + 1]; ++q)
+        target_.push_back(FindEntry(entry_row_[q], entry_row_[p]));
+    }
+  }
+}
+
+int HeadSystem::FindEntry(int row, int column) const {
+  const auto begin = entry_row_.begin() + column_begin_[column],
+             end = entry_row_.begin() + column_begin_[column + 1];
+  const auto found = std::lower_bound(begin, end, row);
+  Demand(found != end && *found == row, "the pattern of L holds every link and every fill-in");
+  return static_cast<int>(found - entry_row_.begin());
 }
 
 void HeadSystem::Clear() {
-  std::fill_n(values_, matrix_.nonZeros(), 0.0);
-  right_.setZero();
+  std::fill(diagonal_.begin(), diagonal_.end(), 0.0);
+  std::fill(lower_.begin(), lower_.end(), 0.0);
+  std::fill(right_.begin(), right_.end(), 0.0);
 }
 
-bool HeadSystem::Solve() {
-  factors_.factorize(matrix_);
-  const auto& pivots = factors_.vectorD();
-  for (Eigen::Index i = 0; i < pivots.size(); ++i) {
-    if (!(pivots[i] > 0)) {
-      bad_junction_ = junction_[static_cast<std::size_t>(i)];
+/// Eliminates column after column: A_ij -= A_ik A_jk / d_k.
+bool HeadSystem::Factorize() {
+  const int* target = target_.data();
+  for (int k = 0; k < size_; ++k) {
+    if (!(diagonal_[k] > 0)) {
+      bad_junction_ = junction_[k];
       return false;
     }
+    const double inverse = 1 / diagonal_[k];
+    const int end = column_begin_[k + 1];
+    for (int p = column_begin_[k]; p < end; ++p) {
+      const double value = lower_[p], l = value * inverse;
+      diagonal_[entry_row_[p]] -= l * value;
+      for (int q = p + 1; q < end; ++q) lower_[*target++] -= l * lower_[q];
+      lower_[p] = l;
+    }
   }
-  SolveAgain();
   return true;
 }
 
-void HeadSystem::SolveAgain() { solution_ = factors_.solve(right_); }
+void HeadSystem::SolveAgain() {
+  for (int k = 0; k < size_; ++k) {
+    const double value = right_[k];
+    for (int p = column_begin_[k]; p < column_begin_[k + 1]; ++p) right_[entry_row_[p]] -= lower_[p] * value;
+  }
+  for (int k = size_ - 1; k >= 0; --k) {
+    double value = right_[k] / diagonal_[k];
+    for (int p = column_begin_[k]; p < column_begin_[k + 1]; ++p) value -= lower_[p] * right_[entry_row_[p]];
+    right_[k] = value;
+  }
+  right_[size_] = 0;
+}
+
+bool HeadSystem::Solve() {
+  if (!Factorize()) return false;
+  SolveAgain();
+  return true;
+}
 
 }  // namespace piperun::sim

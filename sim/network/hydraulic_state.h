@@ -16,7 +16,7 @@ struct HydraulicState {
   std::vector<double> emitter_m3_s;        ///< per junction
   std::vector<double> fixed_leak_m3_s;     ///< per junction, through the part of the leaks that does not grow
   std::vector<double> variable_leak_m3_s;  ///< per junction, through the part that grows with pressure
-  std::vector<double> inflow_m3_s;         ///< per reservoir and tank, net flow into it
+  std::vector<double> inflow_m3_s;         ///< per reservoir and tank, net, as the iterations left it
   std::vector<double> flow_m3_s;           ///< per link, from -> to
   std::vector<LinkStatus> status;          ///< per link
   std::vector<double> setting;             ///< per link: pump speed, valve setting; NaN: the status is fixed
@@ -38,7 +38,8 @@ struct SolveReport {
   End end = End::kUnbalanced;
   int iterations = 0;
   double relative_flow_change = 0;  ///< sum |dQ| / sum |Q| of the last iteration
-  double max_head_error_m = 0;      ///< greatest |head difference - head loss of the flow|, at `worst_link`
+  double max_head_error_m = 0;  ///< greatest |head difference - head loss of the flow|, at `worst_link`; see
+                                ///< HydraulicSolver::FindHeadError
   int worst_link = -1;
   double max_imbalance_m3_s = 0;  ///< greatest |inflow - outflow| of a junction, at `worst_node`
   int worst_node = -1;

@@ -154,8 +154,8 @@ std::int64_t HydraulicSimulation::StepThroughRules(std::int64_t step_s) {
   return now - begin;
 }
 
-/// V += Q dt; a tank that a second would fill is full, one that is drawn below its minimum is empty. EPANET's rule:
-/// within half a second's flow of its minimum a tank keeps the level it has.
+/// V += Q dt; a tank that a second would fill is full, one that is drawn below its minimum is empty. EPANET's
+/// rule: within half a second's flow of its minimum a tank keeps the level it has.
 void HydraulicSimulation::FillTanks(std::int64_t step_s) {
   for (std::size_t i = 0; i < model_.tanks.size(); ++i) {
     const TankNode& tank = model_.tanks[i];

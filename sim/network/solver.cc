@@ -12,7 +12,7 @@ namespace piperun::sim {
 namespace {
 
 constexpr double kBalanced_m3_s = 1e-10;
-constexpr int kBalanceTrials = 4;
+constexpr int kBalanceTrials = 20;
 constexpr double kMostTrickle_m3_s = 2e-6;  // through a closed link; more feeds a part that is cut off
 constexpr double kDampedStep = 0.6;
 constexpr double kGreatestDemandStep = 0.4;
@@ -129,12 +129,10 @@ bool HydraulicSolver::HasPinned(const HydraulicState& state) const {
 
 /// A link's part in the equations: its flow if no head changed, q - h/h' + dH/h', and how it follows heads.
 void HydraulicSolver::PredictLink(int link, double flow_m3_s, double conductance) {
-  const auto& [from, to] = ends_[link];
   predicted_m3_s_[link] = flow_m3_s;
   conductance_m2_s_[link] = conductance;
   system_.AddLink(link, conductance);
-  if (from < model_.junction_count()) system_.AddRight(from, -flow_m3_s);
-  if (to < model_.junction_count()) system_.AddRight(to, flow_m3_s);
+  system_.AddFlow(link, flow_m3_s);
 }
 
 /// What comes to each node by all links but pinned valves, minus what leaves it: what a pinned valve must
@@ -163,28 +161,31 @@ void HydraulicSolver::Assemble(const HydraulicState& state) {
   AssembleLinks(state);
 }
 
-void HydraulicSolver::AssembleLinks(const HydraulicState& state) {
-  for (int link = 0; link < model_.link_count(); ++link) {
-    if (IsControlled(state, link)) {
-      AssembleValve(state, link);
-    } else {
-      const double conductance = 1 / losses_[link].slope_s_m2;
-      const double drop = state.head_m[ends_[link].first] - state.head_m[ends_[link].second];
-      PredictLink(link, state.flow_m3_s[link] + conductance * (drop - losses_[link].loss_m), conductance);
-    }
-  }
+/// A link that follows its law: q = q0 + (drop - h(q0)) / h'(q0) if no head changes.
+void HydraulicSolver::AssembleLawful(const HydraulicState& state, int link) {
+  const double conductance = 1 / losses_[link].slope_s_m2;
+  const double drop = state.head_m[ends_[link].first] - state.head_m[ends_[link].second];
+  PredictLink(link, state.flow_m3_s[link] + conductance * (drop - losses_[link].loss_m), conductance);
 }
 
-void HydraulicSolver::AssembleValve(const HydraulicState& state, int link) {
-  const auto& [from, to] = ends_[link];
-  const double drop = state.head_m[from] - state.head_m[to];
-  if (IsPinned(state, link)) return AssemblePinned(state, link);
-  if (state.status[link] == LinkStatus::kActive) {  // flow control: passes its setting whatever the heads
-    const double conductance = 1 / epanet::kClosedSlope_s_m2;
-    return PredictLink(link, state.setting[link] + conductance * drop, conductance);
+/// An active FCV passes its setting whatever the heads.
+void HydraulicSolver::AssembleFlowControl(const HydraulicState& state, int link) {
+  const double conductance = 1 / epanet::kClosedSlope_s_m2;
+  const double drop = state.head_m[ends_[link].first] - state.head_m[ends_[link].second];
+  PredictLink(link, state.setting[link] + conductance * drop, conductance);
+}
+
+void HydraulicSolver::AssembleLinks(const HydraulicState& state) {
+  for (int link = 0; link < model_.first_valve(); ++link) AssembleLawful(state, link);
+  for (int link = model_.first_valve(); link < model_.link_count(); ++link) {
+    if (IsPinned(state, link)) {
+      AssemblePinned(state, link);
+    } else if (IsControlled(state, link) && state.status[link] == LinkStatus::kActive) {
+      AssembleFlowControl(state, link);
+    } else {
+      AssembleLawful(state, link);
+    }
   }
-  const double conductance = 1 / losses_[link].slope_s_m2;
-  PredictLink(link, state.flow_m3_s[link] + conductance * (drop - losses_[link].loss_m), conductance);
 }
 
 /// What a pinned valve must pass, given the excess of its nodes.
@@ -224,16 +225,19 @@ void HydraulicSolver::AssembleOutlets(const HydraulicState& state) {
   }
 }
 
-void HydraulicSolver::UpdateLinkFlow(HydraulicState& state, int link, double relaxation, FlowChange& change) {
-  const double flow = state.flow_m3_s[link];
-  double step = relaxation * (predicted_m3_s_[link] + conductance_m2_s_[link] * Rise_m(link) - flow);
+/// Adds a relaxed step to a flow.
+void HydraulicSolver::FlowChange::Apply(double step_m3_s, double& flow_m3_s) {
+  flow_m3_s += step_m3_s;
+  total_m3_s += std::abs(flow_m3_s);
+  changed_m3_s += std::abs(step_m3_s);
+  greatest_m3_s = std::max(greatest_m3_s, std::abs(step_m3_s));
+}
+
+/// A pump of constant power has no law for flow backwards: it is halved instead.
+double HydraulicSolver::LimitStep(int link, double flow_m3_s, double step_m3_s) const {
   const int pump = link - model_.first_pump();
   const bool is_power_pump = pump >= 0 && link < model_.first_valve() && laws_.IsConstantPower(pump);
-  if (is_power_pump && -step > flow) step = -flow / 2;  // it has no law for flow backwards
-  state.flow_m3_s[link] = flow + step;
-  change.total_m3_s += std::abs(flow + step);
-  change.changed_m3_s += std::abs(step);
-  change.greatest_m3_s = std::max(change.greatest_m3_s, std::abs(step));
+  return is_power_pump && -step_m3_s > flow_m3_s ? -flow_m3_s / 2 : step_m3_s;
 }
 
 void HydraulicSolver::UpdateOutletFlow(HydraulicState& state, std::size_t i, double relaxation,
@@ -246,17 +250,20 @@ void HydraulicSolver::UpdateOutletFlow(HydraulicState& state, std::size_t i, dou
   double step = relaxation * (outlet_predicted_m3_s_[i] +
                               outlet_conductance_m2_s_[i] * system_.Solution(outlet.junction) - flow);
   if (is_demand) step = std::clamp(step, -kGreatestDemandStep * full, kGreatestDemandStep * full);
-  flow += step;
-  change.total_m3_s += std::abs(flow);
-  change.changed_m3_s += std::abs(step);
-  change.greatest_m3_s = std::max(change.greatest_m3_s, std::abs(step));
+  change.Apply(step, flow);
 }
 
 HydraulicSolver::FlowChange HydraulicSolver::UpdateFlows(HydraulicState& state, double relaxation) {
   FlowChange change;
-  for (int link = 0; link < model_.link_count(); ++link) UpdateLinkFlow(state, link, relaxation, change);
+  for (int link = 0; link < model_.link_count(); ++link) {
+    double& flow = state.flow_m3_s[link];
+    double step =
+        relaxation * (predicted_m3_s_[link] + conductance_m2_s_[link] * system_.Difference(link) - flow);
+    if (link >= model_.first_pump()) step = LimitStep(link, flow, step);
+    change.Apply(step, flow);
+  }
   for (std::size_t i = 0; i < outlets_.size(); ++i) UpdateOutletFlow(state, i, relaxation, change);
-  RaiseHeads(state);
+  for (int i = 0; i < model_.junction_count(); ++i) state.head_m[i] += system_.Solution(i);
   return change;
 }
 
@@ -306,14 +313,14 @@ bool HydraulicSolver::IsConverged(const HydraulicState& state, const SolveReport
   if (report.relative_flow_change > options.accuracy) return false;
   if (options.head_error_m > 0) {
     SolveReport error;
-    CalcHeadError(state, error);
+    FindHeadError(state, error);
     if (error.max_head_error_m > options.head_error_m) return false;
   }
   if (options.flow_change_m3_s > 0 && change.greatest_m3_s > options.flow_change_m3_s) return false;
   return OutletsConverged(state);
 }
 
-void HydraulicSolver::CalcHeadError(const HydraulicState& state, SolveReport& report) {
+void HydraulicSolver::FindHeadError(const HydraulicState& state, SolveReport& report) {
   laws_.CalcLosses(state, losses_);
   report.max_head_error_m = 0;
   report.worst_link = -1;
@@ -328,7 +335,7 @@ void HydraulicSolver::CalcHeadError(const HydraulicState& state, SolveReport& re
   }
 }
 
-void HydraulicSolver::CalcImbalance(const HydraulicState& state, SolveReport& report) {
+void HydraulicSolver::FindImbalance(const HydraulicState& state, SolveReport& report) {
   std::fill(excess_m3_s_.begin(), excess_m3_s_.end(), 0.0);
   for (std::size_t link = 0; link < ends_.size(); ++link) {
     excess_m3_s_[ends_[link].first] -= state.flow_m3_s[link];
@@ -359,36 +366,26 @@ void HydraulicSolver::SettleFlows(HydraulicState& state) {
   }
 }
 
-/// Balances mass with the last iteration's linear equations: no new slopes, only right-hand sides.
+/// Balances mass by changing flows along the last iteration's linear equations: no new slopes, only
+/// right-hand sides. Heads stay those at which the iterations ended, as EPANET reports them.
 void HydraulicSolver::Balance(HydraulicState& state, SolveReport& report) {
   for (int i = 0; i <= kBalanceTrials; ++i) {
     SettleFlows(state);
-    CalcImbalance(state, report);
+    FindImbalance(state, report);
     if (report.max_imbalance_m3_s <= kBalanced_m3_s || i == kBalanceTrials) return;
     for (int node = 0; node < model_.junction_count(); ++node) {
       system_.SetRight(node, excess_m3_s_[node] - state.Outflow_m3_s(node));
     }
     system_.SolveAgain();
     for (int link = 0; link < model_.link_count(); ++link) {
-      if (!IsClosed(state.status[link])) state.flow_m3_s[link] += conductance_m2_s_[link] * Rise_m(link);
+      if (!IsClosed(state.status[link]))
+        state.flow_m3_s[link] += conductance_m2_s_[link] * system_.Difference(link);
     }
     for (std::size_t k = 0; k < outlets_.size(); ++k) {
       if (IsIdle(outlets_[k], state)) continue;
       OutletFlow(outlets_[k], state) += outlet_conductance_m2_s_[k] * system_.Solution(outlets_[k].junction);
     }
-    RaiseHeads(state);
   }
-}
-
-/// By how much the head difference of a link has grown in the last solution.
-double HydraulicSolver::Rise_m(int link) const {
-  const auto& [from, to] = ends_[link];
-  const int n = model_.junction_count();
-  return (from < n ? system_.Solution(from) : 0) - (to < n ? system_.Solution(to) : 0);
-}
-
-void HydraulicSolver::RaiseHeads(HydraulicState& state) const {
-  for (int i = 0; i < model_.junction_count(); ++i) state.head_m[i] += system_.Solution(i);
 }
 
 void HydraulicSolver::CalcInflows(HydraulicState& state) const {
@@ -433,7 +430,7 @@ SolveReport HydraulicSolver::Solve(HydraulicState& state) {
   }
   CalcInflows(state);
   Balance(state, report);
-  CalcHeadError(state, report);
+  if (!report.converged() || options.head_error_m > 0) FindHeadError(state, report);
   return report;
 }
 
