@@ -14,8 +14,7 @@ namespace {
 std::string TypeOfChannel(const Scenario& scenario, const std::string& name) {
   const auto entry = std::find_if(scenario.sensors.begin(), scenario.sensors.end(),
                                   [&](const SensorEntry& e) { return e.name == name; });
-  const std::string& kind = entry->kind.kind();
-  return kind == "hydrophone" ? "audio" : kind;
+  return std::string(entry->kind.records());
 }
 
 double HeadingFromMap(const Assembly& assembly) {

@@ -20,18 +20,21 @@ std::vector<KindOption> MakeOptions(const std::vector<Kind>& kinds) {
 }
 
 std::vector<KindOption> MakeSensorOptions() {
-  std::vector<KindOption> options = MakeOptions(sim::SensorKinds());
+  std::vector<KindOption> options;
+  for (const sim::SensorKind& kind : sim::SensorKinds()) {
+    options.push_back({kind.name, kind.doc, kind.make_params, kind.records});
+  }
   options.push_back({"hydrophone", "Hydrophone with its converter: everything the ball hears.",
-                     MakeParams<acoustics::HydrophoneParams>});
+                     MakeParams<acoustics::HydrophoneParams>, "audio"});
   return options;
 }
 
-std::unique_ptr<Params> MakeParamsOf(KindEntry::Options options, std::string_view kind) {
+const KindOption& FindOption(KindEntry::Options options, std::string_view kind) {
   const auto& all = options();
   const auto found =
       std::find_if(all.begin(), all.end(), [&](const KindOption& o) { return o.name == kind; });
   Demand(found != all.end(), "a kind's name comes from its table");
-  return found->make_params();
+  return *found;
 }
 
 }  // namespace
@@ -54,7 +57,7 @@ const std::vector<KindOption>& FilterOptions() {
 }
 
 KindEntry::KindEntry(Options options, std::string_view kind)
-    : options_(options), kind_(kind), params_(MakeParamsOf(options, kind)) {}
+    : options_(options), kind_(kind), params_(FindOption(options, kind).make_params()) {}
 
 KindEntry::KindEntry(const KindEntry& other)
     : options_(other.options_), kind_(other.kind_), params_(other.params_->Clone()) {}
@@ -64,13 +67,15 @@ KindEntry& KindEntry::operator=(const KindEntry& other) {
   return *this;
 }
 
+std::string_view KindEntry::records() const { return FindOption(options_, kind_).records; }
+
 void KindEntry::Visit(ParamVisitor& v) {
   std::vector<std::string_view> names;
   for (const KindOption& option : options_()) names.push_back(option.name);
   const std::string before = kind_;
   v.Choice({.name = "kind", .doc = "Which kind this is; the other keys depend on it.", .required = true},
            names, kind_);
-  if (kind_ != before) params_ = MakeParamsOf(options_, kind_);
+  if (kind_ != before) params_ = FindOption(options_, kind_).make_params();
   params_->Visit(v);
 }
 

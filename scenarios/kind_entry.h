@@ -14,6 +14,7 @@ struct KindOption {
   std::string_view name;
   std::string_view doc;
   std::unique_ptr<Params> (*make_params)();
+  std::string_view records = {};  ///< sensors: "imu", "magnetometer", "pressure" or "audio"
 };
 
 const std::vector<KindOption>& SensorOptions();  ///< the sensors of sim/, and the hydrophone
@@ -33,6 +34,8 @@ class KindEntry {
 
   const std::string& kind() const { return kind_; }
   const Params& params() const { return *params_; }
+  /// What a sensor of this kind records; empty for other kinds.
+  std::string_view records() const;
   Options options() const { return options_; }
   /// Kind first, then the parameters of the kind just read.
   void Visit(ParamVisitor& v);

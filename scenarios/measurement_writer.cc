@@ -157,10 +157,11 @@ void AudioDescription::Visit(ParamVisitor& v) {
 std::unique_ptr<MeasurementWriter> MakeMeasurementWriter(const SensorEntry& entry, const Pose& X_BS,
                                                          const RecordOptions& options,
                                                          const std::filesystem::path& folder) {
-  const std::string& kind = entry.kind.kind();
-  if (kind == "imu") return std::make_unique<ImuWriter>(entry, X_BS, folder);
-  if (kind == "magnetometer") return std::make_unique<MagWriter>(entry, X_BS, folder);
-  if (kind == "pressure") return std::make_unique<PressureWriter>(entry, X_BS, folder);
+  const std::string_view records = entry.kind.records();
+  if (records == "imu") return std::make_unique<ImuWriter>(entry, X_BS, folder);
+  if (records == "magnetometer") return std::make_unique<MagWriter>(entry, X_BS, folder);
+  if (records == "pressure") return std::make_unique<PressureWriter>(entry, X_BS, folder);
+  Demand(records == "audio", "every sensor kind records something that can be written");
   const auto& params = dynamic_cast<const acoustics::HydrophoneParams&>(entry.kind.params());
   return std::make_unique<AudioChannelWriter>(entry, params, options, folder);
 }

@@ -44,7 +44,8 @@ struct FluidLoad {
 ///   drag                 1/2 rho A C_D(Re/f) |u-v| (u-v) / f^2,  Re = |u-v| d/nu
 ///   spin torque          k_spin 1/2 rho r^5 C_w |w_u-w| (w_u-w), w_u = 1/2 curl u
 ///
-/// with f = CalcWallFactor(d/D, Re).///
+/// with f = CalcWallFactor(d/D, Re).
+///
 /// u, Du/Dt, curl u are averages over the frontal disc (sim/flow_field.h). C_D, f and C_w: sim/drag.h, with
 /// sources and ranges; every speed from rest up is allowed. f is measured for a sphere on the axis; k_spin is
 /// calibrated on balls rolling along the wall (sim/ball.h). Left out: lift, Magnus force, turbulence.

@@ -49,6 +49,7 @@ class Sensor {
 struct SensorKind {
   std::string_view name;
   std::string_view doc;
+  std::string_view records;  ///< what its samples are: "imu", "magnetometer" or "pressure"
   std::unique_ptr<Params> (*make_params)();
   std::unique_ptr<Sensor> (*make)(const Params& params, const SensorContext& context);
 };

@@ -112,7 +112,7 @@ std::unique_ptr<Sensor> Make(const Params& params, const SensorContext& context)
 }  // namespace
 
 SensorKind Kind() {
-  return {"imu", "Gyroscope and accelerometer: means over the sampling interval, with their errors.",
+  return {"imu", "Gyroscope and accelerometer: means over the sampling interval, with their errors.", "imu",
           MakeParams<ImuParams>, Make};
 }
 

@@ -71,7 +71,7 @@ std::unique_ptr<Sensor> Make(const Params& params, const SensorContext& context)
 
 SensorKind Kind() {
   return {"magnetometer", "Three-axis magnetometer in a uniform field, with hard and soft iron.",
-          MakeParams<MagnetometerParams>, Make};
+          "magnetometer", MakeParams<MagnetometerParams>, Make};
 }
 
 }  // namespace piperun::sim::sensors::magnetometer

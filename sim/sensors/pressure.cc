@@ -68,7 +68,7 @@ std::unique_ptr<Sensor> Make(const Params& params, const SensorContext& context)
 }  // namespace
 
 SensorKind Kind() {
-  return {"pressure", "Gauge pressure at the ball's centre.", MakeParams<PressureParams>, Make};
+  return {"pressure", "Gauge pressure at the ball's centre.", "pressure", MakeParams<PressureParams>, Make};
 }
 
 }  // namespace piperun::sim::sensors::pressure

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "base/check.h"
 #include "scenarios/assemble.h"
 #include "scenarios/embedded.h"
@@ -44,6 +46,11 @@ TEST(Catalogue, WalksHaveThePrintedLengths) {
     const auto assembly = Assemble(LoadScenario(name));
     EXPECT_NEAR(assembly->route->length_m(), length_m, 1e-9) << name;
   }
+}
+
+TEST(SensorOptions, EveryKindSaysWhatItRecords) {
+  const std::set<std::string_view> known{"imu", "magnetometer", "pressure", "audio"};
+  for (const KindOption& option : SensorOptions()) EXPECT_TRUE(known.contains(option.records)) << option.name;
 }
 
 TEST(Catalogue, UnknownNameIsCorrected) {
