@@ -79,7 +79,7 @@ void NoteWhatIsIgnored(const InpSections& sections, InpDraft& draft);
 void RequireConnected(const InpSections& sections, const InpDraft& draft);
 
 inline const std::vector<InpLine>& Lines(const InpSections& sections, InpSection section) {
-  return sections[static_cast<std::size_t>(section)];
+  return sections.lines[static_cast<std::size_t>(section)];
 }
 
 }  // namespace piperun::sim

@@ -35,13 +35,28 @@ void ReadTag(const InpLine& line, InpDraft& draft) {
 }  // namespace
 
 void ReadMap(const InpSections& sections, InpDraft& draft) {
+  int unknown = 0;
   for (const InpLine& line : Lines(sections, InpSection::kCoordinates)) {
     const MapPoint point = ReadPoint(line);
-    WithNode(draft, ReadNode(line, 0, draft), [&](auto& node) { node.position = point; });
+    const auto node = draft.node_index.find(line[0]);
+    if (node == draft.node_index.end()) {
+      ++unknown;
+    } else {
+      WithNode(draft, node->second, [&](auto& element) { element.position = point; });
+    }
   }
   for (const InpLine& line : Lines(sections, InpSection::kVertices)) {
     const MapPoint point = ReadPoint(line);
-    WithLink(draft, ReadLink(line, 0, draft), [&](auto& link) { link.vertices.push_back(point); });
+    const auto link = draft.link_index.find(line[0]);
+    if (link == draft.link_index.end()) {
+      ++unknown;
+    } else {
+      WithLink(draft, link->second, [&](auto& element) { element.vertices.push_back(point); });
+    }
+  }
+  if (unknown > 0) {
+    draft.model.notes.push_back("[COORDINATES], [VERTICES]: " + std::to_string(unknown) +
+                                " lines of unknown nodes or links left out");
   }
   for (const InpLine& line : Lines(sections, InpSection::kTags)) ReadTag(line, draft);
 }
@@ -60,6 +75,7 @@ void NoteWhatIsIgnored(const InpSections& sections, InpDraft& draft) {
                                   {InpSection::kLabels, "labels of the drawing are not used"},
                                   {InpSection::kBackdrop, "the drawing's backdrop is not used"},
                                   {InpSection::kRoughness, "EPANET itself no longer reads this section"}};
+  if (!sections.has_end) draft.model.notes.push_back("no [END]: the file may be cut short");
   for (const Ignored& ignored : kIgnored) {
     const std::size_t count = Lines(sections, ignored.section).size();
     if (count == 0) continue;

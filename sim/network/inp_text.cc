@@ -99,7 +99,7 @@ std::optional<InpSection> FindSection(std::string_view heading, std::string_view
   if (BeginsWith(heading, "[END")) return std::nullopt;
   const std::string_view stem = heading.substr(0, heading.find(']'));
   for (std::size_t i = 0; stem.size() >= kLeastHeading && i < kInpSectionCount; ++i) {
-    if (BeginsWith(kNames[i], stem) || BeginsWith(stem, std::string_view(kNames[i]).substr(0, 5))) {
+    if (BeginsWith(kNames[i], stem)) {
       return static_cast<InpSection>(i);
     }
   }
@@ -135,7 +135,8 @@ class Splitter {
  private:
   bool Enter(std::string_view heading) {
     section_ = FindSection(heading, name_, number_);
-    return section_.has_value();
+    sections_.has_end = !section_.has_value();
+    return !sections_.has_end;
   }
 
   void AddWords(std::string_view line) {
@@ -148,7 +149,8 @@ class Splitter {
       for (auto word = TakeWord(rest); !word.empty(); word = TakeWord(rest)) result.words.emplace_back(word);
       if (semicolon < line.size()) result.comment = Trim(line.substr(semicolon + 1));
     }
-    if (!result.words.empty()) sections_[static_cast<std::size_t>(*section_)].push_back(std::move(result));
+    if (!result.words.empty())
+      sections_.lines[static_cast<std::size_t>(*section_)].push_back(std::move(result));
   }
 
   std::string_view name_;

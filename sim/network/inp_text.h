@@ -57,7 +57,10 @@ struct InpLine {
   void RequireWords(std::size_t n, const char* layout) const;
 };
 
-using InpSections = std::array<std::vector<InpLine>, kInpSectionCount>;
+struct InpSections {
+  std::array<std::vector<InpLine>, kInpSectionCount> lines;
+  bool has_end = false;  ///< [END] was there: the file is whole
+};
 
 /// A text cut into its sections (in any order, each as often as it likes, up to [END]), lines without
 /// comments. Latin-1 becomes UTF-8. Throws InputError for bytes that no text has, text before the first

@@ -180,7 +180,7 @@ void HydraulicSimulation::FillTanks(std::int64_t step_s) {
 
 bool HydraulicSimulation::IsReportTime() const {
   const HydraulicTimes& times = model_.times;
-  if (time_s_ == times.duration_s) return true;
+  if (time_s_ >= times.duration_s) return true;
   return time_s_ >= times.report_start_s && (time_s_ - times.report_start_s) % times.report_step_s == 0;
 }
 
