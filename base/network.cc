@@ -94,6 +94,28 @@ void RequireUniqueIds(const std::vector<T>& items, const std::string& list) {
 
 double Pipe::area_m2() const { return std::numbers::pi * radius_m() * radius_m(); }
 
+double Pipe::RadiusAt_m(double s_m) const {
+  if (s_m < cone_from.length_m) {
+    return std::lerp(cone_from.end_radius_m, radius_m(), std::max(0.0, s_m) / cone_from.length_m);
+  }
+  const double to_end_m = length_m - s_m;
+  if (to_end_m < cone_to.length_m) {
+    return std::lerp(cone_to.end_radius_m, radius_m(), std::max(0.0, to_end_m) / cone_to.length_m);
+  }
+  return radius_m();
+}
+
+CentrelinePoint Pipe::Eval(double s_m) const {
+  std::size_t i = 0;
+  while (i + 1 < centreline.size() && s_m > centreline[i].s_end_m()) ++i;
+  return EvalCentreline(centreline[i], s_m);
+}
+
+Vector3d Pipe::Inward(bool at_to) const {
+  const Vector3d tangent = Eval(EndS_m(at_to)).tangent_W;
+  return at_to ? -tangent : tangent;
+}
+
 Network::Network(std::vector<NodeSpec> nodes, const std::vector<PipeSpec>& pipes) : nodes_(std::move(nodes)) {
   if (pipes.empty()) throw InputError("a network needs at least one pipe", "network.pipes");
   RequireUniqueIds(nodes_, "network.nodes");
@@ -104,18 +126,16 @@ Network::Network(std::vector<NodeSpec> nodes, const std::vector<PipeSpec>& pipes
   pipes_.reserve(pipes.size());
   for (std::size_t i = 0; i < pipes.size(); ++i) {
     pipes_.push_back(BuildPipe(nodes_, pipes[i], ItemKey("network.pipes", i)));
+    pipes_.back().passable = pipes[i].passable;
+  }
+  ends_.resize(nodes_.size());
+  for (std::size_t i = 0; i < pipes_.size(); ++i) {
+    ends_[static_cast<std::size_t>(pipes_[i].from)].push_back({static_cast<int>(i), false});
+    ends_[static_cast<std::size_t>(pipes_[i].to)].push_back({static_cast<int>(i), true});
   }
 }
 
 std::optional<int> Network::FindNode(std::string_view id) const { return FindId(nodes_, id); }
 std::optional<int> Network::FindPipe(std::string_view id) const { return FindId(pipes_, id); }
-
-std::vector<int> Network::PipesAt(int node) const {
-  std::vector<int> found;
-  for (std::size_t i = 0; i < pipes_.size(); ++i) {
-    if (pipes_[i].from == node || pipes_[i].to == node) found.push_back(static_cast<int>(i));
-  }
-  return found;
-}
 
 }  // namespace piperun

@@ -22,6 +22,7 @@ struct WallMaterial {
 struct NodeSpec {
   std::string id;
   Vector3d position_m = Vector3d::Zero();  ///< W frame: x east, y north, z up (elevation)
+  bool open_water = false;                 ///< a reservoir or tank: whoever comes here has left the pipes
 };
 
 /// A pipe from node to node as a user describes it: the polyline from -> vertices -> to, corners rounded.
@@ -34,6 +35,21 @@ struct PipeSpec {
   double bend_radius_m = 0;  ///< of the centreline, at every vertex; not read when there is none
   std::vector<Vector3d> vertices_m;
   WallMaterial material;
+  double length_m = 0;   ///< as stated; 0: as drawn
+  bool passable = true;  ///< false: a pump, a closed or throttling valve; nothing solid gets through
+};
+
+/// A concentric reducer at an end of a pipe: the bore widens to that of the pipe it meets there.
+struct Cone {
+  double length_m = 0;  ///< along the pipe, from its end; 0: none
+  double end_radius_m = 0;
+};
+
+/// One end of a pipe.
+struct PipeEnd {
+  int pipe = 0;
+  bool at_to = false;
+  bool operator==(const PipeEnd&) const = default;
 };
 
 struct Pipe {
@@ -45,9 +61,18 @@ struct Pipe {
   WallMaterial material;
   std::vector<CentrelinePiece> centreline;  ///< s = 0 at `from`
   double length_m = 0;
+  Cone cone_from, cone_to;
+  bool passable = true;
 
   double radius_m() const { return 0.5 * diameter_m; }
   double area_m2() const;
+  /// Radius of the bore at s: radius_m() but in the cones.
+  double RadiusAt_m(double s_m) const;
+  double EndS_m(bool at_to) const { return at_to ? length_m : 0; }
+  /// Axis at s; beyond the ends the first or last piece goes on.
+  CentrelinePoint Eval(double s_m) const;
+  /// Unit tangent of the axis at an end, pointing into the pipe.
+  Vector3d Inward(bool at_to) const;
 };
 
 /// An immutable pipe network: nodes, and pipes made of straight lines and circular bends.
@@ -63,12 +88,14 @@ class Network {
   const Pipe& pipe(int i) const { return pipes_[static_cast<std::size_t>(i)]; }
   std::optional<int> FindNode(std::string_view id) const;
   std::optional<int> FindPipe(std::string_view id) const;
-  /// Pipes that begin or end at a node.
-  std::vector<int> PipesAt(int node) const;
+  /// Pipes that begin or end at a node; one that does both is named twice.
+  const std::vector<PipeEnd>& EndsAt(int node) const { return ends_[static_cast<std::size_t>(node)]; }
+  int NodeAt(PipeEnd end) const { return end.at_to ? pipe(end.pipe).to : pipe(end.pipe).from; }
 
  private:
   std::vector<NodeSpec> nodes_;
   std::vector<Pipe> pipes_;
+  std::vector<std::vector<PipeEnd>> ends_;  ///< per node
 };
 
 }  // namespace piperun

@@ -67,7 +67,7 @@ std::vector<int> SpreadFrom(const Network& network, int launch_node) {
   while (!open.empty()) {
     const int node = open.front();
     open.pop_front();
-    for (const int p : network.PipesAt(node)) {
+    for (const auto& [p, at_to] : network.EndsAt(node)) {
       const int next = OtherEnd(network.pipe(p), node);
       if (next == launch_node || reached_by[static_cast<std::size_t>(next)] != kUnreached) continue;
       reached_by[static_cast<std::size_t>(next)] = p;

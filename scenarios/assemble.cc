@@ -25,7 +25,7 @@ const Kind& FindKind(const std::vector<Kind>& kinds, const std::string& name) {
 void RefuseSideBranches(const Network& network, const Route& route) {
   for (const RouteLeg& leg : route.legs()) {
     for (const int node : {network.pipe(leg.pipe).from, network.pipe(leg.pipe).to}) {
-      if (network.PipesAt(node).size() > 2) {
+      if (network.EndsAt(node).size() > 2) {
         throw InputError("node '" + network.nodes()[static_cast<std::size_t>(node)].id +
                              "' joins more than two pipes; junctions on the route are not supported yet",
                          "network.pipes");

@@ -200,7 +200,7 @@ void FillSidePipes(const Network& network, const Route& route, FlowState& state)
   }
   for (; !open.empty(); open.pop_front()) {
     const auto [node, head_m] = open.front();
-    for (const int p : network.PipesAt(node)) {
+    for (const auto& [p, at_to] : network.EndsAt(node)) {
       FlowReach& reach = state.pipes[static_cast<std::size_t>(p)].front();
       if (!std::isnan(reach.head_begin_m)) continue;
       reach.head_begin_m = reach.head_end_m = head_m;

@@ -13,6 +13,7 @@ namespace {
 /// The row of every junction in the order that fills in least.
 std::vector<int> FindRows(int n, const std::vector<std::pair<int, int>>& ends) {
   std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(static_cast<std::size_t>(n) + 2 * ends.size());
   for (int i = 0; i < n; ++i) entries.emplace_back(i, i, 1.0);
   for (const auto& [from, to] : ends) {
     if (from < n && to < n) {

@@ -119,7 +119,7 @@ std::int64_t ReadTime(const InpLine& line, std::size_t word) {
         "' is not one; write hours (1.5), h:mm:ss, or a number with SEC, MIN, HOURS, DAYS, AM or PM, at "
         "most a century");
   }
-  return static_cast<std::int64_t>(*hours * kSecondsPerHour + 0.5);
+  return std::llround(*hours * kSecondsPerHour);
 }
 
 std::optional<LinkStatus> FindStatus(std::string_view word) {

@@ -19,23 +19,9 @@ constexpr double kGreatestDemandStep = 0.4;
 
 std::vector<std::pair<int, int>> GatherEnds(const HydraulicModel& model) {
   std::vector<std::pair<int, int>> ends;
+  ends.reserve(static_cast<std::size_t>(model.link_count()));
   for (int link = 0; link < model.link_count(); ++link) ends.emplace_back(model.From(link), model.To(link));
   return ends;
-}
-
-constexpr double kNoSetting = std::numeric_limits<double>::quiet_NaN();
-
-double FirstOutletFlow_m3_s(Outlet::Kind kind) {
-  return kind == Outlet::Kind::kEmitter ? epanet::kFirstEmitterFlow_m3_s : epanet::kFirstLeakageFlow_m3_s;
-}
-
-void AddLinkState(LinkStatus status, double setting, HydraulicState& state) {
-  state.status.push_back(status);
-  state.setting.push_back(setting);
-}
-
-bool PinsPressure(ValveKind kind) {
-  return kind == ValveKind::kPressureReducing || kind == ValveKind::kPressureSustaining;
 }
 
 }  // namespace
@@ -53,177 +39,6 @@ HydraulicSolver::HydraulicSolver(const HydraulicModel& model)
       outlet_predicted_m3_s_(outlets_.size()),
       outlet_conductance_m2_s_(outlets_.size()),
       excess_m3_s_(static_cast<std::size_t>(model.node_count())) {}
-
-HydraulicState HydraulicSolver::MakeState() const {
-  HydraulicState state;
-  const auto junctions = static_cast<std::size_t>(model_.junction_count());
-  for (const ReservoirNode& reservoir : model_.reservoirs) state.head_m.push_back(reservoir.head_m);
-  for (const TankNode& tank : model_.tanks) state.head_m.push_back(tank.elevation_m + tank.initial_level_m);
-  const double highest = *std::max_element(state.head_m.begin(), state.head_m.end());
-  state.inflow_m3_s.resize(state.head_m.size());
-  state.head_m.insert(state.head_m.begin(), junctions, highest);
-  state.demand_m3_s.resize(junctions);
-  state.delivered_m3_s.resize(junctions);
-  state.emitter_m3_s.resize(junctions);
-  state.fixed_leak_m3_s.resize(junctions);
-  state.variable_leak_m3_s.resize(junctions);
-  for (const Outlet& outlet : outlets_) {
-    if (outlet.kind != Outlet::Kind::kDemand) OutletFlow(outlet, state) = FirstOutletFlow_m3_s(outlet.kind);
-  }
-  for (const PipeLink& pipe : model_.pipes) AddLinkState(pipe.status, kNoSetting, state);
-  for (const PumpLink& pump : model_.pumps) AddLinkState(pump.status, pump.speed, state);
-  for (const ValveLink& valve : model_.valves) {
-    AddLinkState(valve.status, valve.status == LinkStatus::kActive ? valve.setting : kNoSetting, state);
-  }
-  for (int link = 0; link < model_.link_count(); ++link) {
-    state.flow_m3_s.push_back(laws_.FirstFlow_m3_s(link, state.status[link], state.setting[link]));
-  }
-  return state;
-}
-
-void HydraulicSolver::SetLeak(int junction, const LeakCoefficients& leak, HydraulicState& state) {
-  const auto set = [&](Outlet::Kind kind, double coefficient, double exponent) {
-    auto found = std::find_if(outlets_.begin(), outlets_.end(), [&](const Outlet& outlet) {
-      return outlet.junction == junction && outlet.kind == kind;
-    });
-    if (found == outlets_.end()) {
-      if (coefficient == 0) return;
-      found =
-          outlets_.insert(found, {kind, junction, 0, exponent, model_.junctions[junction].elevation_m, 0});
-      outlet_predicted_m3_s_.push_back(0);
-      outlet_conductance_m2_s_.push_back(0);
-    }
-    found->coefficient = coefficient;
-    const double flow = CalcOutletFlow_m3_s(*found, state.head_m[junction], 0);
-    OutletFlow(*found, state) = coefficient == 0 ? 0 : std::max(flow, epanet::kZeroFlow_m3_s);
-  };
-  set(Outlet::Kind::kFixedLeak, leak.fixed_m25_s, 2);
-  set(Outlet::Kind::kVariableLeak, leak.variable_m15_s, 2.0 / 3);
-}
-
-/// Outlets with nothing to deliver stay out of the equations.
-bool HydraulicSolver::IsIdle(const Outlet& outlet, const HydraulicState& state) const {
-  return outlet.kind == Outlet::Kind::kDemand ? state.demand_m3_s[outlet.junction] <= 0
-                                              : outlet.coefficient == 0;
-}
-
-bool HydraulicSolver::IsControlled(const HydraulicState& state, int link) const {
-  const int valve = link - model_.first_valve();
-  if (valve < 0 || std::isnan(state.setting[link])) return false;
-  const ValveKind kind = model_.valves[valve].kind;
-  return PinsPressure(kind) || kind == ValveKind::kFlowControl;
-}
-
-bool HydraulicSolver::IsPinned(const HydraulicState& state, int link) const {
-  const int valve = link - model_.first_valve();
-  return valve >= 0 && PinsPressure(model_.valves[valve].kind) && !std::isnan(state.setting[link]) &&
-         state.status[link] == LinkStatus::kActive;
-}
-
-bool HydraulicSolver::HasPinned(const HydraulicState& state) const {
-  for (int link = model_.first_valve(); link < model_.link_count(); ++link) {
-    if (IsPinned(state, link)) return true;
-  }
-  return false;
-}
-
-/// A link's part in the equations: its flow if no head changed, q - h/h' + dH/h', and how it follows heads.
-void HydraulicSolver::PredictLink(int link, double flow_m3_s, double conductance) {
-  predicted_m3_s_[link] = flow_m3_s;
-  conductance_m2_s_[link] = conductance;
-  system_.AddLink(link, conductance);
-  system_.AddFlow(link, flow_m3_s);
-}
-
-/// What comes to each node by all links but pinned valves, minus what leaves it: what a pinned valve must
-/// carry.
-void HydraulicSolver::CalcExcess(const HydraulicState& state) {
-  std::fill(excess_m3_s_.begin(), excess_m3_s_.end(), 0.0);
-  for (int link = 0; link < model_.link_count(); ++link) {
-    if (IsPinned(state, link)) continue;
-    const bool passes_setting = IsControlled(state, link) && state.status[link] == LinkStatus::kActive;
-    const double flow = passes_setting ? state.setting[link] : state.flow_m3_s[link];
-    excess_m3_s_[ends_[link].first] -= flow;
-    excess_m3_s_[ends_[link].second] += flow;
-  }
-  for (int i = 0; i < model_.junction_count(); ++i) excess_m3_s_[i] -= state.Outflow_m3_s(i);
-}
-
-void HydraulicSolver::Assemble(const HydraulicState& state) {
-  laws_.CalcLosses(state, losses_);
-  system_.Clear();
-  if (HasPinned(state)) CalcExcess(state);
-  for (int i = 0; i < model_.junction_count(); ++i) {
-    if (!model_.options.pressure_driven || state.demand_m3_s[i] <= 0)
-      system_.AddRight(i, -state.delivered_m3_s[i]);
-  }
-  AssembleOutlets(state);
-  AssembleLinks(state);
-}
-
-/// A link that follows its law: q = q0 + (drop - h(q0)) / h'(q0) if no head changes.
-void HydraulicSolver::AssembleLawful(const HydraulicState& state, int link) {
-  const double conductance = 1 / losses_[link].slope_s_m2;
-  const double drop = state.head_m[ends_[link].first] - state.head_m[ends_[link].second];
-  PredictLink(link, state.flow_m3_s[link] + conductance * (drop - losses_[link].loss_m), conductance);
-}
-
-/// An active FCV passes its setting whatever the heads.
-void HydraulicSolver::AssembleFlowControl(const HydraulicState& state, int link) {
-  const double conductance = 1 / epanet::kClosedSlope_s_m2;
-  const double drop = state.head_m[ends_[link].first] - state.head_m[ends_[link].second];
-  PredictLink(link, state.setting[link] + conductance * drop, conductance);
-}
-
-void HydraulicSolver::AssembleLinks(const HydraulicState& state) {
-  for (int link = 0; link < model_.first_valve(); ++link) AssembleLawful(state, link);
-  for (int link = model_.first_valve(); link < model_.link_count(); ++link) {
-    if (IsPinned(state, link)) {
-      AssemblePinned(state, link);
-    } else if (IsControlled(state, link) && state.status[link] == LinkStatus::kActive) {
-      AssembleFlowControl(state, link);
-    } else {
-      AssembleLawful(state, link);
-    }
-  }
-}
-
-/// What a pinned valve must pass, given the excess of its nodes.
-double HydraulicSolver::PinnedFlow_m3_s(int link) const {
-  const bool reduces = model_.valves[link - model_.first_valve()].kind == ValveKind::kPressureReducing;
-  return reduces ? -excess_m3_s_[ends_[link].second] : excess_m3_s_[ends_[link].first];
-}
-
-/// An active PRV or PSV: one node's head is its setting, and what flows is what this node needs or has to
-/// spare.
-void HydraulicSolver::AssemblePinned(const HydraulicState& state, int link) {
-  const auto& [from, to] = ends_[link];
-  const bool reduces = model_.valves[link - model_.first_valve()].kind == ValveKind::kPressureReducing;
-  const int pinned = reduces ? to : from, other = reduces ? from : to;
-  const double goal_m = model_.junctions[pinned].elevation_m + state.setting[link];
-  const double through = PinnedFlow_m3_s(link);
-  predicted_m3_s_[link] = through;
-  conductance_m2_s_[link] = 0;
-  system_.AddDiagonal(pinned, epanet::kPinWeight_m2_s);
-  system_.AddRight(pinned, epanet::kPinWeight_m2_s * (goal_m - state.head_m[pinned]));
-  if (through > 0) system_.AddRight(other, reduces ? -through : through);
-  if (!reduces) system_.AddLink(link, 1 / epanet::kClosedSlope_s_m2);  // keeps the far side supported
-}
-
-void HydraulicSolver::AssembleOutlets(const HydraulicState& state) {
-  for (std::size_t i = 0; i < outlets_.size(); ++i) {
-    const Outlet& outlet = outlets_[i];
-    const double full = state.demand_m3_s[outlet.junction];
-    if (IsIdle(outlet, state)) continue;
-    const double flow = OutletFlow(outlet, state);
-    const HeadLoss head = CalcOutletHead(outlet, flow, full, model_.options);
-    const double drop = state.head_m[outlet.junction] - outlet.base_head_m;
-    outlet_conductance_m2_s_[i] = 1 / head.slope_s_m2;
-    outlet_predicted_m3_s_[i] = flow + (drop - head.loss_m) / head.slope_s_m2;
-    system_.AddDiagonal(outlet.junction, outlet_conductance_m2_s_[i]);
-    system_.AddRight(outlet.junction, -outlet_predicted_m3_s_[i]);
-  }
-}
 
 /// Adds a relaxed step to a flow.
 void HydraulicSolver::FlowChange::Apply(double step_m3_s, double& flow_m3_s) {
@@ -398,6 +213,19 @@ void HydraulicSolver::CalcInflows(HydraulicState& state) const {
   }
 }
 
+/// True when a link or a pressure control changed a status.
+bool HydraulicSolver::UpdateStatuses(HydraulicState& state) const {
+  const bool links_changed = statuses_.UpdateLinks(state);
+  return statuses_.UpdatePressureControls(state) || links_changed;
+}
+
+/// What is told of a solution when the iterations have ended, however they ended.
+void HydraulicSolver::Finish(HydraulicState& state, SolveReport& report) {
+  CalcInflows(state);
+  Balance(state, report);
+  if (!report.converged() || model_.options.head_error_m > 0) FindHeadError(state, report);
+}
+
 SolveReport HydraulicSolver::Solve(HydraulicState& state) {
   const HydraulicOptions& options = model_.options;
   const int max_trials = options.max_trials + std::max(0, options.extra_trials);
@@ -417,10 +245,7 @@ SolveReport HydraulicSolver::Solve(HydraulicState& state) {
     const bool valves_changed = (options.damp_limit == 0 || damp) && statuses_.UpdatePressureValves(state);
     if (IsConverged(state, report, change)) {
       report.end = SolveReport::End::kConverged;
-      if (report.iterations > options.max_trials) break;
-      const bool links_changed = statuses_.UpdateLinks(state);
-      const bool controls_changed = statuses_.UpdatePressureControls(state);
-      if (!valves_changed && !links_changed && !controls_changed) break;
+      if (report.iterations > options.max_trials || (!UpdateStatuses(state) && !valves_changed)) break;
       report.end = SolveReport::End::kUnbalanced;
       next_check = report.iterations + options.check_frequency;
     } else if (report.iterations <= options.max_check && report.iterations == next_check) {
@@ -428,9 +253,7 @@ SolveReport HydraulicSolver::Solve(HydraulicState& state) {
       next_check += options.check_frequency;
     }
   }
-  CalcInflows(state);
-  Balance(state, report);
-  if (!report.converged() || options.head_error_m > 0) FindHeadError(state, report);
+  Finish(state, report);
   return report;
 }
 

@@ -75,6 +75,8 @@ class HydraulicSolver {
   double PinnedFlow_m3_s(int link) const;
   void SettleFlows(HydraulicState& state);
   void Balance(HydraulicState& state, SolveReport& report);
+  bool UpdateStatuses(HydraulicState& state) const;
+  void Finish(HydraulicState& state, SolveReport& report);
   void FindImbalance(const HydraulicState& state, SolveReport& report);
   void CalcInflows(HydraulicState& state) const;
 

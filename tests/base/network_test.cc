@@ -37,8 +37,8 @@ TEST(Network, FindsNodesAndPipesById) {
   EXPECT_EQ(network.FindPipe("P2"), 1);
   EXPECT_FALSE(network.FindNode("P1").has_value());
   EXPECT_FALSE(network.FindPipe("p1").has_value());
-  EXPECT_EQ(network.PipesAt(0), (std::vector<int>{0}));
-  EXPECT_EQ(network.PipesAt(1), (std::vector<int>{0, 1}));
+  EXPECT_EQ(network.EndsAt(0), (std::vector<PipeEnd>{{0, false}}));
+  EXPECT_EQ(network.EndsAt(1), (std::vector<PipeEnd>{{0, true}, {1, false}}));
 }
 
 TEST(Network, PipesRunFromNodeToNode) {

@@ -1,0 +1,81 @@
+#include "sim/bore.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+
+namespace piperun::sim {
+namespace {
+
+constexpr double kMaxKink_rad = 1e-6;  // below this two pipes are one
+constexpr double kMaxGap_m = 1e-9;     // below this two drawings are one
+constexpr double kMinBranching_rad = 0.1;
+
+/// How far along arm `a` the bore of arm `b` may still be open towards it.
+double CalcReach_m(const JointArm& a, const JointArm& b) {
+  const double cosine = a.outward.dot(b.outward);
+  if (cosine <= 0) return b.radius_m;
+  const double angle = std::max(kMinBranching_rad, std::acos(std::min(1.0, cosine)));
+  return (b.radius_m + a.radius_m * std::cos(angle)) / std::sin(angle);
+}
+
+bool IsSmooth(const std::vector<JointArm>& arms) {
+  if (arms.size() != 2 || arms[0].radius_m != arms[1].radius_m) return false;
+  const Vector3d &a = arms[0].outward, b = -arms[1].outward;
+  return std::atan2(a.cross(b).norm(), a.dot(b)) <= kMaxKink_rad;
+}
+
+}  // namespace
+
+Bore::Bore(const Network& network, std::vector<bool> open) : network_(network), open_(std::move(open)) {
+  Demand(open_.empty() || open_.size() == network.pipes().size(), "a mask names every pipe");
+  for (std::size_t node = 0; node < network.nodes().size(); ++node) {
+    joints_.push_back(MakeJoint(static_cast<int>(node)));
+  }
+}
+
+Joint Bore::MakeJoint(int node) const {
+  Joint joint;
+  joint.node = node;
+  for (const PipeEnd& end : network_.EndsAt(node)) {
+    if (!open(end.pipe)) continue;
+    const Pipe& pipe = network_.pipe(end.pipe);
+    const double s_m = pipe.EndS_m(end.at_to);
+    joint.arms.push_back({end, pipe.Eval(s_m).p_W, pipe.Inward(end.at_to), pipe.RadiusAt_m(s_m), 0});
+    joint.sphere_radius_m = std::max(joint.sphere_radius_m, joint.arms.back().radius_m);
+  }
+  joint.smooth = IsSmooth(joint.arms);
+  if (joint.smooth) return joint;
+  for (JointArm& arm : joint.arms) {
+    arm.reach_m = joint.sphere_radius_m;
+    for (const JointArm& other : joint.arms) {
+      if (&other != &arm) arm.reach_m = std::max(arm.reach_m, CalcReach_m(arm, other));
+    }
+  }
+  return joint;
+}
+
+const Joint* Bore::FindJoint(int pipe, double s_m) const {
+  const Pipe& p = network_.pipe(pipe);
+  const bool at_to = s_m > 0.5 * p.length_m;
+  const Joint& near = joint(at_to ? p.to : p.from);
+  if (near.smooth) return nullptr;
+  const double from_end_m = at_to ? p.length_m - s_m : s_m;
+  return from_end_m < FindArm(near, {pipe, at_to}).reach_m ? &near : nullptr;
+}
+
+const JointArm& Bore::FindArm(const Joint& joint, PipeEnd end) const {
+  const auto found =
+      std::find_if(joint.arms.begin(), joint.arms.end(), [&](const JointArm& arm) { return arm.end == end; });
+  Demand(found != joint.arms.end(), "an end is an arm of the joint at its node");
+  return *found;
+}
+
+Vector3d Bore::ShiftAcross(PipeEnd from, PipeEnd to) const {
+  const Joint& at = joint(network_.NodeAt(from));
+  const Vector3d shift = FindArm(at, to).p_end_L - FindArm(at, from).p_end_L;
+  return shift.norm() > kMaxGap_m ? shift : Vector3d::Zero();
+}
+
+}  // namespace piperun::sim
