@@ -11,6 +11,7 @@ struct Leak {
   double s_m = 0;  ///< along the pipe from its `from` node
   double hole_diameter_m = 0;
   double discharge_coefficient = 0.6;
+  double area_slope_m = 0;  ///< dA/dh: area by which it grows per metre of pressure head (FAVAD)
 };
 
 /// The same leak once the water is flowing.

@@ -10,8 +10,6 @@
 namespace piperun::scenarios {
 namespace {
 
-const Route* RouteOf(const Assembly& assembly) { return assembly.route ? &*assembly.route : nullptr; }
-
 constexpr std::string_view kGroundtruthFolder = "state_groundtruth_estimate0";
 
 template <class Kind>
@@ -21,102 +19,27 @@ const Kind& FindKind(const std::vector<Kind>& kinds, const std::string& name) {
   return *found;
 }
 
-/// Pipes that leave the route would need the flow shared out at the junction.
-void RefuseSideBranches(const Network& network, const Route& route) {
-  for (const RouteLeg& leg : route.legs()) {
-    for (const int node : {network.pipe(leg.pipe).from, network.pipe(leg.pipe).to}) {
-      if (network.EndsAt(node).size() > 2) {
-        throw InputError("node '" + network.nodes()[static_cast<std::size_t>(node)].id +
-                             "' joins more than two pipes; junctions on the route are not supported yet",
-                         "network.pipes");
-      }
-    }
-  }
+/// With pinned branches, only the planned way is open.
+std::vector<bool> FindOpenPipes(const MissionParams& mission, const Pipeline& pipeline) {
+  if (mission.branches == "free") return {};
+  std::vector<bool> open(pipeline.network.pipes().size());
+  for (const RouteLeg& leg : pipeline.plan) open[static_cast<std::size_t>(leg.pipe)] = true;
+  return open;
 }
 
-void RequireBallFits(const Network& network, const Route& route, const sim::BallParams& ball) {
-  for (const RouteLeg& leg : route.legs()) {
-    const Pipe& pipe = network.pipe(leg.pipe);
-    if (ball.radius_m < pipe.radius_m()) continue;
-    throw InputError("a ball of radius " + FormatNumber(ball.radius_m) + " m does not fit into pipe '" +
-                         pipe.id + "' of diameter " + FormatNumber(pipe.diameter_m) + " m; allowed: below " +
-                         FormatNumber(pipe.radius_m()) + " m",
-                     "ball.radius_m");
-  }
-}
-
-std::vector<Leak> MakeLeaks(const Scenario& scenario, const Network& network) {
-  std::vector<Leak> leaks;
-  for (std::size_t i = 0; i < scenario.leaks.size(); ++i) {
-    const LeakEntry& entry = scenario.leaks[i];
-    const std::string key = "leaks[" + std::to_string(i) + "]";
-    RequirePlainId(entry.id, key + ".id");
-    const auto same = [&](const Leak& leak) { return leak.id == entry.id; };
-    if (std::any_of(leaks.begin(), leaks.end(), same)) {
-      throw InputError("'" + entry.id + "' is used twice; ids must be unique", key + ".id");
-    }
-    const auto pipe = network.FindPipe(entry.pipe);
-    if (!pipe) throw InputError("there is no pipe '" + entry.pipe + "'", key + ".pipe");
-    const Pipe& on = network.pipe(*pipe);
-    if (entry.s_m > on.length_m) {
-      throw InputError(FormatNumber(entry.s_m) + " is beyond the end of pipe '" + on.id + "'; allowed: [0, " +
-                           FormatNumber(on.length_m) + "]",
-                       key + ".s_m");
-    }
-    if (entry.hole_diameter_m >= on.diameter_m) {
-      throw InputError(
-          "the hole is wider than the pipe; allowed: below " + FormatNumber(on.diameter_m) + " m",
-          key + ".hole_diameter_m");
-    }
-    leaks.push_back({entry.id, *pipe, entry.s_m, entry.hole_diameter_m, entry.cd});
-  }
-  return leaks;
-}
-
-void PlaceLeaks(const std::vector<Leak>& leaks, Assembly& assembly) {
-  for (std::size_t i = 0; i < leaks.size(); ++i) {
-    const auto chainage = assembly.route->Chainage(leaks[i].pipe, leaks[i].s_m);
-    if (!chainage) {
-      throw InputError("this pipe is not on the ball's route, so the leak could never be heard",
-                       "leaks[" + std::to_string(i) + "].pipe");
-    }
-    assembly.leaks.push_back(
-        {leaks[i], assembly.flow->leaks[i], *chainage, assembly.route->Eval(*chainage).p_W});
-  }
-}
-
-void BuildPipeline(const Scenario& scenario, Assembly& assembly) {
-  assembly.network.emplace(MakeNetwork(scenario.network));
-  const Network& network = *assembly.network;
-  assembly.route.emplace(MakeRoute(network, scenario.mission.launch, scenario.mission.retrieve, "mission"));
-  RefuseSideBranches(network, *assembly.route);
-  RequireBallFits(network, *assembly.route, scenario.ball);
-  const std::vector<Leak> leaks = MakeLeaks(scenario, network);
-  assembly.flow.emplace(sim::SolveSteadyFlow(network, *assembly.route,
-                                             {scenario.flow.inlet_m3_s, scenario.flow.inlet_pressure_Pa},
-                                             leaks, assembly.water, scenario.gravity_m_s2));
-  PlaceLeaks(leaks, assembly);
+void BuildWay(const Scenario& scenario, Assembly& assembly) {
+  assembly.pipeline.emplace(BuildPipeline(scenario, assembly.water));
+  const Pipeline& pipeline = *assembly.pipeline;
+  assembly.plan.emplace(pipeline.network, pipeline.plan);
+  assembly.bore.emplace(pipeline.network, FindOpenPipes(scenario.mission, pipeline));
 }
 
 void BuildScene(const Scenario& scenario, Assembly& assembly) {
   acoustics::AcousticScene& scene = assembly.scene;
   scene.ambient = scenario.ambient;
   scene.water = assembly.water;
-  if (!assembly.route) return;
-  for (const RoutePiece& piece : assembly.route->pieces()) {
-    const Pipe& pipe = assembly.network->pipe(piece.pipe);
-    scene.legs.push_back(
-        {piece.line.s_begin_m, piece.line.length_m,
-         acoustics::CalcPipeWave(pipe.diameter_m, pipe.wall_thickness_m, pipe.material, assembly.water)});
-  }
-  for (std::size_t i = 0; i < assembly.leaks.size(); ++i) {
-    const PlacedLeak& placed = assembly.leaks[i];
-    const KindEntry& sound = scenario.leaks[i].sound;
-    const auto& kind = FindKind(acoustics::LeakSoundKinds(), sound.kind());
-    scene.leaks.push_back(
-        {placed.leak.id, placed.chainage_m,
-         kind.make(sound.params(), placed.leak.hole_diameter_m, placed.state, assembly.water.density_kg_m3)});
-  }
+  if (!assembly.pipeline) return;
+  @ @ @
 }
 
 void BuildMotion(const Scenario& scenario, Assembly& assembly) {
@@ -125,9 +48,15 @@ void BuildMotion(const Scenario& scenario, Assembly& assembly) {
   context.run = static_cast<std::uint64_t>(scenario.run);
   context.gravity_W = {0, 0, -scenario.gravity_m_s2};
   context.water = assembly.water;
-  context.network = assembly.network ? &*assembly.network : nullptr;
-  context.route = RouteOf(assembly);
-  context.flow = assembly.flow ? &assembly.flow->timeline : nullptr;
+  if (assembly.pipeline) {
+    const Pipeline& pipeline = *assembly.pipeline;
+    context.network = &pipeline.network;
+    context.route = &*assembly.plan;
+    context.bore = &*assembly.bore;
+    context.flow = &pipeline.flow;
+    context.launch = {pipeline.plan.front().pipe, pipeline.plan.front().reversed};
+    context.retrieve_node = pipeline.retrieve_node;
+  }
   context.ball = scenario.ball;
   context.lateral_sd_m = scenario.mission.lateral_sd_m;
   context.stuck_after_s = scenario.mission.stuck_after_s;
@@ -145,9 +74,11 @@ std::unique_ptr<Channel> MakeChannel(int index, const SensorEntry& entry, const 
   const RandomStream random(static_cast<std::uint64_t>(scenario.seed), entry.name,
                             static_cast<std::uint64_t>(scenario.run));
   if (const auto* hydrophone = dynamic_cast<const acoustics::HydrophoneParams*>(&entry.kind.params())) {
-    if (!assembly.route) throw InputError("a hydrophone needs a pipe, and this scenario has no network");
+    if (!assembly.pipeline) {
+      throw InputError("a hydrophone needs a pipe, and this scenario has no network");
+    }
     return std::make_unique<HydrophoneChannel>(index, *hydrophone, assembly.scene, random, assembly.clock,
-                                               RouteOf(assembly));
+                                               assembly.network());
   }
   const Rate truth_rate = assembly.motion->rate();
   const sim::SensorContext context{random, assembly.clock, {0, 0, -scenario.gravity_m_s2}, truth_rate};
@@ -182,9 +113,9 @@ std::unique_ptr<Assembly> Build(const Scenario& scenario) {
   auto assembly = std::make_unique<Assembly>();
   assembly->water = CalcWater(scenario.water.temperature_C);
   assembly->clock = {FromSeconds(scenario.ball.clock_offset_s), scenario.ball.clock_drift_ppm};
-  if (!scenario.network.pipes.empty()) {
-    BuildPipeline(scenario, *assembly);
-  } else if (!scenario.leaks.empty()) {
+  if (!scenario.network.pipes.empty() || !scenario.network.inp.empty()) {
+    BuildWay(scenario, *assembly);
+  } else if (!scenario.leaks.empty() || scenario.random_leaks.count > 0) {
     throw InputError("a leak needs a pipe, and this scenario has no network", "leaks");
   }
   BuildScene(scenario, *assembly);

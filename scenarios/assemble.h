@@ -9,33 +9,26 @@
 #include "base/route.h"
 #include "base/water.h"
 #include "scenarios/channel.h"
+#include "scenarios/pipeline.h"
 #include "scenarios/scenario.h"
-#include "sim/hydraulics.h"
 #include "sim/motion.h"
 
 namespace piperun::scenarios {
 
-/// A leak with all that is true of it before the run.
-struct PlacedLeak {
-  Leak leak;
-  LeakState state;
-  double chainage_m = 0;
-  Vector3d p_W = Vector3d::Zero();  ///< on the pipe's axis
-};
-
 /// A scenario made ready to run. Parts refer to each other, so it stays where it was built.
 struct Assembly {
   WaterProperties water;
-  std::optional<Network> network;
-  std::optional<Route> route;
-  std::vector<PlacedLeak> leaks;  ///< those on the route
-  std::optional<sim::SteadyFlow> flow;
+  std::optional<Pipeline> pipeline;
+  std::optional<Route> plan;      ///< the way the crew expects
+  std::optional<sim::Bore> bore;  ///< what is open to the ball
   acoustics::AcousticScene scene;
   ClockModel clock;
   std::unique_ptr<sim::Motion> motion;
   std::vector<std::string> channel_names;  ///< sorted; Measurement::channel indexes it
   std::vector<std::unique_ptr<Channel>> channels;
   const SensorChannel* imu = nullptr;  ///< the first inertial channel, if any
+
+  const Network* network() const { return pipeline ? &pipeline->network : nullptr; }
 };
 
 /// Builds everything a scenario describes. Throws InputError with key path, and with file and line where the

@@ -13,5 +13,6 @@ struct EmbeddedFile {
 
 const std::vector<EmbeddedFile>& EmbeddedScenarios();  ///< scenarios/library/*.yaml
 const std::vector<EmbeddedFile>& EmbeddedMaterials();  ///< assets/materials/*.yaml
+const std::vector<EmbeddedFile>& EmbeddedNetworks();   ///< assets/networks/*.inp
 
 }  // namespace piperun::scenarios

@@ -18,14 +18,14 @@ std::string TypeOfChannel(const Scenario& scenario, const std::string& name) {
 }
 
 double HeadingFromMap(const Assembly& assembly) {
-  const Vector3d t = assembly.route->Eval(0).tangent_W;
+  const Vector3d t = assembly.plan->Eval(0).tangent_W;
   return std::atan2(t.y(), t.x());
 }
 
 ToldParams Tell(const StartParams& start, const Scenario& scenario, const Assembly& assembly,
                 const std::string& key_path) {
   ToldParams told;
-  told.map = start.map == "as_built" && assembly.route;
+  told.map = start.map == "as_built" && assembly.plan;
   if (start.heading == "from_map") {
     if (!told.map) {
       throw InputError("there is no map to take the heading from; say 'heading: given' or 'heading: unknown'",
@@ -51,12 +51,50 @@ ToldParams Tell(const StartParams& start, const Scenario& scenario, const Assemb
   return told;
 }
 
+std::vector<RouteLeg> MakeLegs(const Network& network, const std::vector<MapLeg>& way) {
+  std::vector<RouteLeg> legs;
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    const auto pipe = network.FindPipe(way[i].pipe);
+    if (!pipe) {
+      throw InputError("there is no pipe '" + way[i].pipe + "'", "map.way[" + std::to_string(i) + "].pipe");
+    }
+    legs.push_back({*pipe, way[i].reversed});
+  }
+  if (legs.empty()) throw InputError("the way through the map is missing", "map.way");
+  return legs;
+}
+
+/// The planned way, and of the network as much as a crew would print for it.
+MapParams MakeMap(const Pipeline& pipeline) {
+  const Network& network = pipeline.network;
+  std::vector<bool> node_used(network.nodes().size()), pipe_used(network.pipes().size());
+  const auto use_pipe = [&](int pipe) {
+    pipe_used[static_cast<std::size_t>(pipe)] = true;
+    node_used[static_cast<std::size_t>(network.pipe(pipe).from)] = true;
+    node_used[static_cast<std::size_t>(network.pipe(pipe).to)] = true;
+  };
+  MapParams map;
+  for (const RouteLeg& leg : pipeline.plan) {
+    map.way.push_back({network.pipe(leg.pipe).id, leg.reversed});
+    for (const int node : {network.pipe(leg.pipe).from, network.pipe(leg.pipe).to}) {
+      for (const PipeEnd& end : network.EndsAt(node)) use_pipe(end.pipe);
+    }
+  }
+  for (std::size_t i = 0; i < node_used.size(); ++i) {
+    if (node_used[i]) map.network.nodes.push_back(pipeline.drawing.nodes[i]);
+  }
+  for (std::size_t i = 0; i < pipe_used.size(); ++i) {
+    if (pipe_used[i]) map.network.pipes.push_back(pipeline.drawing.pipes[i]);
+  }
+  return map;
+}
+
 estimator::EstimatorStart MakeStart(const EstimatorInput& input, const ToldParams& told) {
   estimator::EstimatorStart start;
   if (told.map) {
     Network network = MakeNetwork(input.map.network);
-    Route route = MakeRoute(network, input.map.launch, input.map.retrieve, "map");
-    start.map.emplace(estimator::RouteMap{std::move(network), std::move(route)});
+    Route way(network, MakeLegs(network, input.map.way));
+    start.map.emplace(estimator::RouteMap{std::move(network), std::move(way)});
   }
   start.chainage_m = told.chainage_m;
   start.chainage_sd_m = told.chainage_sd_m;
@@ -80,10 +118,14 @@ void RequireChannel(const EstimatorInput& input, std::string_view type, const st
 
 }  // namespace
 
+void MapLeg::Visit(ParamVisitor& v) {
+  v.Text({"pipe", "Its name.", true}, pipe);
+  v.Flag({"reversed", "Travelled from its `to` node to its `from` node."}, reversed);
+}
+
 void MapParams::Visit(ParamVisitor& v) {
   v.Struct({"network", "Nodes and pipes as drawn."}, network);
-  v.Text({"launch", "Node where the ball goes in."}, launch);
-  v.Text({"retrieve", "Node where it comes out."}, retrieve);
+  v.Items({"way", "The planned way, pipe by pipe; chainage 0 at its beginning."}, way);
 }
 
 void ToldParams::Visit(ParamVisitor& v) {
@@ -128,7 +170,7 @@ EstimatorInput MakeEstimatorInput(const Scenario& scenario, const Assembly& asse
   for (const std::string& name : assembly.channel_names) {
     input.channels.push_back({name, TypeOfChannel(scenario, name)});
   }
-  input.map = {scenario.network, scenario.mission.launch, scenario.mission.retrieve};
+  if (assembly.pipeline) input.map = MakeMap(*assembly.pipeline);
   for (const EstimatorEntry& entry : scenario.estimators) {
     input.estimators.push_back(
         {entry.name, entry.kind,

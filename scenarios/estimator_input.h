@@ -9,11 +9,17 @@
 
 namespace piperun::scenarios {
 
-/// The drawings of the pipeline that the crew has.
+/// One pipe of the planned way.
+struct MapLeg {
+  std::string pipe;
+  bool reversed = false;
+  void Visit(ParamVisitor& v);
+};
+
+/// The drawings that the crew has: the pipes of the planned way and those that meet them.
 struct MapParams {
   NetworkParams network;
-  std::string launch;
-  std::string retrieve;
+  std::vector<MapLeg> way;
   void Visit(ParamVisitor& v);
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "scenarios/nearest_name.h"
 
 namespace piperun::scenarios {
 namespace {
@@ -11,13 +12,6 @@ WallMaterial MakeMaterial(const PipeEntry& entry) {
   const WallParams& wall = entry.wall;
   return {entry.material,     wall.young_modulus_Pa, wall.loss_factor,
           wall.poisson_ratio, wall.density_kg_m3,    wall.roughness_m};
-}
-
-int ResolveNode(const Network& network, const std::string& id, const std::string& key) {
-  if (id.empty()) throw InputError("the node is missing; name a node of the network", key);
-  const auto node = network.FindNode(id);
-  if (!node) throw InputError("there is no node '" + id + "'", key);
-  return *node;
 }
 
 }  // namespace
@@ -50,10 +44,14 @@ Network MakeNetwork(const NetworkParams& params) {
   return Network(std::move(nodes), pipes);
 }
 
-Route MakeRoute(const Network& network, const std::string& launch, const std::string& retrieve,
-                const std::string& group) {
-  return FindRoute(network, ResolveNode(network, launch, group + ".launch"),
-                   ResolveNode(network, retrieve, group + ".retrieve"));
+int ResolveNode(const Network& network, const std::string& id, const std::string& key_path) {
+  if (id.empty()) throw InputError("the node is missing; name a node of the network", key_path);
+  if (const auto node = network.FindNode(id)) return *node;
+  std::vector<std::string> known;
+  for (const NodeSpec& node : network.nodes()) known.push_back(node.id);
+  std::string problem = "there is no node '" + id + "'";
+  if (const auto near = FindNearestName(id, known)) problem += "; did you mean '" + *near + "'?";
+  throw InputError(problem, key_path);
 }
 
 }  // namespace piperun::scenarios

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "base/route.h"
+#include "base/network.h"
 #include "scenarios/scenario.h"
 
 namespace piperun::scenarios {
@@ -14,8 +14,7 @@ void RequirePlainId(const std::string& id, const std::string& key_path);
 /// The network that the parameters describe. Throws InputError with key paths under "network".
 Network MakeNetwork(const NetworkParams& params);
 
-/// The route between two nodes given by id; `group` is where the keys launch and retrieve stand.
-Route MakeRoute(const Network& network, const std::string& launch, const std::string& retrieve,
-                const std::string& group);
+/// A node by its id; throws InputError for `key_path`, naming the nearest known id.
+int ResolveNode(const Network& network, const std::string& id, const std::string& key_path);
 
 }  // namespace piperun::scenarios

@@ -25,6 +25,12 @@ const char* Name(sim::MotionStatus status) {
       return "ok";
     case sim::MotionStatus::kBallStuck:
       return "ball_stuck";
+    case sim::MotionStatus::kStalledAtTee:
+      return "stalled_at_tee";
+    case sim::MotionStatus::kDeadEnd:
+      return "dead_end";
+    case sim::MotionStatus::kTooLarge:
+      return "too_large";
     case sim::MotionStatus::kLeftNetwork:
       return "left_network";
     case sim::MotionStatus::kNotFinite:
@@ -87,7 +93,6 @@ class RunLoop {
       lookahead_ = std::max(lookahead_, channel->lookahead());
       due_.push_back(channel->due());
     }
-    WriteTextFile(folder.staging() / "scenario.yaml", WriteScenario(scenario));
     WriteTextFile(folder.staging() / "estimator_input.yaml",
                   WriteYaml([this](ParamVisitor& v) { input_.Visit(v); }));
   }
@@ -144,7 +149,7 @@ class RunLoop {
 
   void Report(const sim::TruthState& state) const {
     if (options_.stop && *options_.stop) throw Interrupted();
-    const double length_m = assembly_.route ? assembly_.route->length_m() : 0;
+    const double length_m = assembly_.plan ? assembly_.plan->length_m() : 0;
     if (options_.progress) {
       options_.progress(Seconds(state.time),
                         length_m > 0 ? std::clamp(state.chainage_m / length_m, 0.0, 1.0) : 0);
@@ -165,29 +170,66 @@ class RunLoop {
 };
 
 void DescribeRoute(const Assembly& assembly, RunResult& result) {
-  if (!assembly.route) return;
-  result.route_length_m = assembly.route->length_m();
-  for (const RouteLeg& leg : assembly.route->legs()) {
-    result.route_pipes.push_back(assembly.network->pipe(leg.pipe).id);
+  if (!assembly.pipeline) return;
+  const Network& network = assembly.pipeline->network;
+  const auto add = [&](int pipe, std::vector<std::string>& names) {
+    names.push_back(network.pipe(pipe).id);
+    return network.pipe(pipe).length_m;
+  };
+  for (const RouteLeg& leg : assembly.pipeline->plan) add(leg.pipe, result.planned_pipes);
+  result.notes = assembly.pipeline->notes;
+  if (const sim::Way* way = assembly.motion->way()) {
+    for (const sim::WayLeg& leg : way->legs()) {
+      // a ball that arrives at a node amid the network has just entered the pipe beyond
+      const bool beyond = assembly.motion->status() == sim::MotionStatus::kArrived &&
+                          &leg != &way->legs().front() &&
+                          network.NodeAt({leg.pipe, leg.reversed}) == assembly.pipeline->retrieve_node;
+      if (!beyond) result.route_length_m += add(leg.pipe, result.route_pipes);
+    }
+  } else {
+    result.route_pipes = result.planned_pipes;
+    result.route_length_m = assembly.plan->length_m();
   }
+}
+
+/// The scenario as it was run, and the files it refers to, so that the folder can be run again anywhere.
+void WriteInputs(const Scenario& scenario, const RunFolder& folder) {
+  Scenario copy = scenario;
+  const auto keep = [&](const char* name, const std::string& text, std::string& path) {
+    if (path.empty()) return;
+    path = name;
+    WriteTextFile(folder.staging() / name, text);
+  };
+  keep("network.inp", scenario.network.inp_text, copy.network.inp);
+  keep("material_rules.yaml", scenario.network.material_rules_text, copy.network.material_rules);
+  WriteTextFile(folder.staging() / "scenario.yaml", WriteScenario(copy));
+}
+
+RunResult RunAssembled(const Scenario& scenario, const RunOptions& options, const RunFolder& folder) {
+  const std::unique_ptr<Assembly> assembly = Assemble(scenario);
+  RunLoop loop(scenario, options, *assembly, folder);
+  loop.Run();
+  RunResult result = loop.Finish();
+  DescribeRoute(*assembly, result);
+  return result;
 }
 
 }  // namespace
 
 RunResult Run(const Scenario& scenario, const RunOptions& options) {
   const auto begin = StartWatch();
-  const std::unique_ptr<Assembly> assembly = Assemble(scenario);
   RunFolder folder(options.out, options.force);
   RunResult result;
-  {
-    RunLoop loop(scenario, options, *assembly, folder);
-    loop.Run();
-    result = loop.Finish();
+  try {
+    result = RunAssembled(scenario, options, folder);
+  } catch (const HydraulicsDiverged& e) {
+    result.status = "hydraulics_diverged";
+    result.notes.push_back(e.what());
   }
+  WriteInputs(scenario, folder);
   result.scenario = scenario.name;
   result.seed = scenario.seed;
   result.run = scenario.run;
-  DescribeRoute(*assembly, result);
   Seal(folder, begin, result);
   return result;
 }

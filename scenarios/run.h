@@ -33,11 +33,13 @@ struct RunResult {
   std::string scenario;
   std::int64_t seed = 0;
   std::int64_t run = 0;
-  std::string status;  ///< ok, ball_stuck, left_network, not_finite, time_limit
+  std::string status;  ///< ok, time_limit, hydraulics_diverged, or what stopped the ball (Name in run.cc)
   double duration_s = 0;
   double wall_s = 0;
-  double route_length_m = 0;
+  double route_length_m = 0;  ///< of the pipes of the way taken
   std::vector<std::string> route_pipes;
+  std::vector<std::string> planned_pipes;
+  std::vector<std::string> notes;  ///< what was assumed where the input is silent
   std::vector<TrueLeak> leaks;
   std::vector<EstimatorResult> estimators;
   std::map<std::string, std::string> file_hashes;  ///< SHA-256 by path in the folder

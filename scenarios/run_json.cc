@@ -26,7 +26,7 @@ Json ToJson(const TrueLeak& leak) {
   return {{"id", leak.id},
           {"pipe", leak.pipe},
           {"s_m", leak.s_m},
-          {"chainage_m", leak.chainage_m},
+          {"chainage_m", OrNull(leak.chainage_m)},
           {"position_m", Position(leak.p_W)},
           {"flow_m3_s", leak.flow_m3_s},
           {"t_cpa_ns", OrNull(leak.t_cpa_ns)},
@@ -94,7 +94,11 @@ std::string WriteRunJson(const RunResult& result) {
       {"wall_s", result.wall_s},
       {"realtime_factor", Number(result.duration_s / result.wall_s)},
       {"version", Version()},
-      {"route", {{"length_m", result.route_length_m}, {"pipes", result.route_pipes}}},
+      {"route",
+       {{"length_m", result.route_length_m},
+        {"pipes", result.route_pipes},
+        {"planned", result.planned_pipes}}},
+      {"notes", result.notes},
       {"truth", {{"leaks", leaks}}},
       {"estimators", estimators},
       {"hash", result.file_hashes},
@@ -113,6 +117,8 @@ RunResult LoadRunSummary(const std::string& text) {
     result.duration_s = json.at("duration_s").get<double>();
     result.route_length_m = json.at("route").at("length_m").get<double>();
     result.route_pipes = json.at("route").at("pipes").get<std::vector<std::string>>();
+    result.planned_pipes = json.at("route").at("planned").get<std::vector<std::string>>();
+    result.notes = json.at("notes").get<std::vector<std::string>>();
     return result;
   } catch (const Json::exception& e) {
     throw InputError(std::string("this is not the run.json of a run: ") + e.what(), "", "run.json");

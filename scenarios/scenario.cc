@@ -48,10 +48,32 @@ void NetworkParams::Visit(ParamVisitor& v) {
   v.Items({"pipes", "Pipes: straight lines with rounded corners, from node to node."}, pipes);
 }
 
+void NetworkSource::Visit(ParamVisitor& v) {
+  v.Text(
+      {"inp",
+       "EPANET input file with the pipes and their hydraulics, instead of nodes and pipes here: a path seen "
+       "from this file, or the name of one of piperun's own networks."},
+      inp);
+  v.NumberOr({"map_unit_m", "Length of one unit of the EPANET file's coordinates."}, Range::Positive(),
+             "fitted", map_unit_m);
+  v.Number(
+      {"bend_radius_diameters",
+       "EPANET file: radius of the axis in corners over the pipe's diameter, less where it does not fit."},
+      Range::Between(0.6, 100), bend_radius_diameters);
+  v.Text({"material_rules",
+          "EPANET file: rules that give every pipe its material and wall (empty: piperun's own)."},
+         material_rules);
+  NetworkParams::Visit(v);
+}
+
 void FlowParams::Visit(ParamVisitor& v) {
-  v.Number({"inlet_m3_s", "Flow entering at the launch node."}, {.min = 0, .max = 100}, inlet_m3_s);
-  v.Number({"inlet_pressure_Pa", "Gauge pressure on the axis at the launch node."}, {.min = 0, .max = 1e8},
-           inlet_pressure_Pa);
+  v.Number({"inlet_m3_s", "Flow entering at the launch node; an EPANET file brings its own."},
+           {.min = 0, .max = 100}, inlet_m3_s);
+  v.Number(
+      {"inlet_pressure_Pa", "Gauge pressure on the axis at the launch node; an EPANET file brings its own."},
+      {.min = 0, .max = 1e8}, inlet_pressure_Pa);
+  v.Number({"launch_time_s", "EPANET file: when in its extended period the ball is launched."},
+           {.min = 0, .max = 1e9}, launch_time_s);
 }
 
 void LeakEntry::Visit(ParamVisitor& v) {
@@ -60,16 +82,40 @@ void LeakEntry::Visit(ParamVisitor& v) {
   v.Number({"s_m", "Distance along that pipe from its `from` node.", true}, Range::NonNegative(), s_m);
   v.Number({"hole_diameter_m", "Diameter of the (circular) hole.", true},
            {.min = 0, .max = 0.1, .min_open = true}, hole_diameter_m);
+  v.Number({"area_slope_m",
+            "Area by which the hole grows per metre of pressure head (m2/m; FAVAD). 0: a rigid hole."},
+           Range::Between(0, 1e-3), area_slope_m);
   v.Number({"cd", "Discharge coefficient of the hole."}, {.min = 0, .max = 1, .min_open = true}, cd);
   v.Struct({"sound", "How it sounds."}, sound);
 }
+
+void RandomLeaksParams::Visit(ParamVisitor& v) {
+  static constexpr std::array<std::string_view, 2> kPlaces{"way", "network"};
+  v.Integer({"count", "How many."}, 0, 1000, count);
+  v.Choice({"where", "On the planned way, or on any pipe; uniform over the length."}, kPlaces, where);
+  v.Number({"min_hole_diameter_m", "Smallest hole; the diameter is drawn log-uniformly."},
+           {.min = 0, .max = 0.1, .min_open = true}, min_hole_diameter_m);
+  v.Number({"max_hole_diameter_m", "Largest hole."}, {.min = 0, .max = 0.1, .min_open = true},
+           max_hole_diameter_m);
+  v.Number({"min_spacing_m", "Least distance from other leaks on the pipe and from its ends."},
+           Range::Between(0.01, 1e4), min_spacing_m);
+  v.Number({"cd", "Discharge coefficient of the holes."}, {.min = 0, .max = 1, .min_open = true}, cd);
+}
+
+void ViaEntry::Visit(ParamVisitor& v) { v.Text({"node", "Node on the way.", true}, node); }
 
 void MissionParams::Visit(ParamVisitor& v) {
   v.Text({"launch",
           "Node where the ball is put in, at rest on the invert; chainage 0. A ball lighter than water "
           "rises to the crown at once."},
          launch);
-  v.Text({"retrieve", "Node where it is taken out."}, retrieve);
+  static constexpr std::array<std::string_view, 2> kBranches{"free", "pinned"};
+  v.Text({"retrieve", "Node where it is taken out; empty: wherever the water takes it."}, retrieve);
+  v.Items({"via", "Nodes that the planned way passes, in order."}, via);
+  v.Choice({"branches",
+            "Where pipes meet: free lets ball and water decide; pinned grates over all pipes that are not on "
+            "the planned way."},
+           kBranches, branches);
   v.Number({"lateral_sd_m", "Scatter of the launch place around the wall, one sigma."}, Range::Between(0, 1),
            lateral_sd_m);
   v.Number({"time_limit_s", "The run ends here at the latest."}, {.min = 0.1, .max = 1e6}, time_limit_s);
@@ -135,6 +181,7 @@ void Scenario::Visit(ParamVisitor& v) {
   v.Struct({"flow", "What enters at the launch node."}, flow);
   v.Struct({"ambient", "What the hydrophone hears besides leaks."}, ambient);
   v.Items({"leaks", "Holes in the wall."}, leaks);
+  v.Struct({"random_leaks", "Holes drawn by seed and run."}, random_leaks);
   v.Struct({"motion", "What moves the ball."}, motion);
   v.Struct({"ball", "The ball."}, ball);
   v.Struct({"mission", "Where it goes in and out, and when to give up."}, mission);

@@ -55,9 +55,21 @@ struct NetworkParams {
   void Visit(ParamVisitor& v);
 };
 
+/// Pipes written down here, or those of an EPANET file.
+struct NetworkSource : NetworkParams {
+  std::string inp;
+  std::optional<double> map_unit_m;  ///< nothing: fitted to the stated lengths
+  double bend_radius_diameters = 1.5;
+  std::string material_rules;
+  std::string inp_text;             ///< of the file `inp`, read with the scenario
+  std::string material_rules_text;  ///< of the file `material_rules`; empty: piperun's own rules
+  void Visit(ParamVisitor& v);
+};
+
 struct FlowParams {
   double inlet_m3_s = 0;
   double inlet_pressure_Pa = 0;
+  double launch_time_s = 0;
   void Visit(ParamVisitor& v);
 };
 
@@ -66,14 +78,33 @@ struct LeakEntry {
   std::string pipe;
   double s_m = 0;
   double hole_diameter_m = 0;
+  double area_slope_m = 0;
   double cd = 0.6;
   KindEntry sound{LeakSoundOptions, "turbulent_jet"};
+  void Visit(ParamVisitor& v);
+};
+
+/// Leaks drawn by seed and run index, on top of those that are listed.
+struct RandomLeaksParams {
+  std::int64_t count = 0;
+  std::string where = "way";
+  double min_hole_diameter_m = 0.001;
+  double max_hole_diameter_m = 0.005;
+  double min_spacing_m = 5;
+  double cd = 0.6;
+  void Visit(ParamVisitor& v);
+};
+
+struct ViaEntry {
+  std::string node;
   void Visit(ParamVisitor& v);
 };
 
 struct MissionParams {
   std::string launch;
   std::string retrieve;
+  std::vector<ViaEntry> via;
+  std::string branches = "free";
   double lateral_sd_m = 0;
   double time_limit_s = 3600;
   double stuck_after_s = 30;
@@ -136,10 +167,11 @@ struct Scenario {
   std::int64_t run = 0;
   double gravity_m_s2 = 9.80665;
   WaterParams water;
-  NetworkParams network;
+  NetworkSource network;
   FlowParams flow;
   acoustics::AmbientParams ambient;
   std::vector<LeakEntry> leaks;
+  RandomLeaksParams random_leaks;
   KindEntry motion{MotionOptions, "ball_in_pipe"};
   sim::BallParams ball;
   MissionParams mission;

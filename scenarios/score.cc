@@ -22,7 +22,8 @@ std::vector<Pair> PairsByDistance(const std::vector<estimator::LeakEstimate>& es
   std::vector<Pair> pairs;
   for (std::size_t i = 0; i < estimates.size(); ++i) {
     for (std::size_t j = 0; j < truth.size(); ++j) {
-      const double distance = std::abs(estimates[i].chainage_m - truth[j].chainage_m);
+      if (!truth[j].chainage_m) continue;
+      const double distance = std::abs(estimates[i].chainage_m - *truth[j].chainage_m);
       if (distance <= radius_m) pairs.push_back({i, j, distance});
     }
   }
@@ -83,10 +84,10 @@ LeakScore ScoreLeaks(const std::vector<estimator::LeakEstimate>& estimates,
     if (scored.match || found[pair.leak]) continue;
     found[pair.leak] = true;
     scored.match = truth[pair.leak].id;
-    scored.error_m = scored.estimate.chainage_m - truth[pair.leak].chainage_m;
+    scored.error_m = scored.estimate.chainage_m - *truth[pair.leak].chainage_m;
   }
   for (std::size_t j = 0; j < truth.size(); ++j) {
-    if (!found[j]) score.missed.push_back(truth[j].id);
+    if (!found[j] && truth[j].chainage_m) score.missed.push_back(truth[j].id);
   }
   score.false_alarms = static_cast<int>(
       std::count_if(score.leaks.begin(), score.leaks.end(), [](const ScoredLeak& s) { return !s.match; }));

@@ -50,7 +50,7 @@ struct TrueLeak {
   std::string id;
   std::string pipe;
   double s_m = 0;
-  double chainage_m = 0;
+  std::optional<double> chainage_m;  ///< nothing: not on the ball's way
   Vector3d p_W = Vector3d::Zero();
   double flow_m3_s = 0;
   std::optional<std::int64_t> t_cpa_ns;  ///< true time of the ball's passage; nothing when it never came
@@ -70,7 +70,7 @@ struct LeakScore {
 };
 
 /// Matches estimates and leaks one to one by chainage: the closest pair first, then the next closest among
-/// those left, up to the radius.
+/// those left, up to the radius. Leaks that are not on the ball's way can be neither matched nor missed.
 LeakScore ScoreLeaks(const std::vector<estimator::LeakEstimate>& estimates,
                      const std::vector<TrueLeak>& truth, double match_radius_m);
 

@@ -84,7 +84,7 @@ std::vector<TrueLeak> LoadTrueLeaks(const std::filesystem::path& path) {
     leak.id = f[0];
     leak.pipe = f[1];
     leak.s_m = number(2);
-    leak.chainage_m = number(3);
+    if (!f[3].empty()) leak.chainage_m = number(3);
     leak.p_W = {number(4), number(5), number(6)};
     leak.flow_m3_s = number(7);
     if (!f[8].empty()) leak.t_cpa_ns = static_cast<std::int64_t>(number(8));

@@ -19,9 +19,9 @@ std::int64_t Nanoseconds(TrueTime t) { return t.time_since_epoch().count(); }
 
 /// When the ball passed the leak, to the nanosecond: from the closest step on at the speed it had there.
 /// Nothing when it turned back or stopped short.
-std::optional<TrueTime> FindPassage(const sim::TruthState& closest, double leak_chainage_m, double step_s) {
+std::optional<TrueTime> FindPassage(const sim::TruthState& closest, double leak_s_m, double step_s) {
   const double speed = closest.v_WB_W.norm();
-  const double ahead_m = leak_chainage_m - closest.chainage_m;
+  const double ahead_m = (closest.reversed ? -1 : 1) * (leak_s_m - closest.s_m);
   if (std::abs(ahead_m) > speed * step_s) return std::nullopt;
   return closest.time + (speed > 0 ? FromSeconds(ahead_m / speed) : Duration(0));
 }
@@ -31,8 +31,17 @@ std::optional<double> CalcSnr_dB(const Assembly& assembly, std::size_t leak,
                                  const acoustics::HydrophoneParams* hydrophone, const sim::TruthState& ball) {
   constexpr double kLow_Hz = 1000, kHigh_Hz = 4000;
   if (!hydrophone || hydrophone->rate_Hz <= 2 * kLow_Hz) return std::nullopt;
-  return acoustics::CalcLeakSnr_dB(assembly.scene, leak, *hydrophone, CalcListener(ball, &*assembly.route),
+  return acoustics::CalcLeakSnr_dB(assembly.scene, leak, *hydrophone, CalcListener(ball, *assembly.network()),
                                    kLow_Hz, std::min(kHigh_Hz, hydrophone->rate_Hz / 2));
+}
+
+/// True when the way taken is the planned one as far as it goes.
+bool FollowsPlan(const sim::Way& way, const Route& plan) {
+  const auto same = [](const sim::WayLeg& a, const RouteLeg& b) {
+    return a.pipe == b.pipe && a.reversed == b.reversed;
+  };
+  return way.legs().size() <= plan.legs().size() &&
+         std::equal(way.legs().begin(), way.legs().end(), plan.legs().begin(), same);
 }
 
 void WriteLeak(OutputFile& file, const TrueLeak& leak) {
@@ -50,7 +59,7 @@ TruthRecorder::TruthRecorder(const Assembly& assembly, Rate truth_rate,
       truth_folder_(truth_folder),
       ball_(truth_folder / "ball.csv"),
       groundtruth_(groundtruth_folder / "data.csv"),
-      approaches_(assembly.leaks.size()) {
+      approaches_(assembly.pipeline ? assembly.pipeline->leaks.size() : 0) {
   ball_.Append(kBallHeader);
   groundtruth_.Append(kGroundtruthHeader);
 }
@@ -66,7 +75,7 @@ void TruthRecorder::Record(const sim::TruthWindow& window) {
 
 void TruthRecorder::WriteRow(const sim::TruthState& state) {
   static const std::string kNoPipe = "-";
-  const std::string& pipe = state.pipe < 0 ? kNoPipe : assembly_.network->pipe(state.pipe).id;
+  const std::string& pipe = state.pipe < 0 ? kNoPipe : assembly_.network()->pipe(state.pipe).id;
   CsvRow(ball_) << Nanoseconds(state.time) << std::string_view(pipe) << state.s_m << state.chainage_m
                 << state.X_WB.p << state.X_WB.q << state.v_WB_W << state.w_WB_B << state.f_WB_B
                 << state.water_speed_m_s << static_cast<std::int64_t>(state.contact) << kEndOfRow;
@@ -81,13 +90,28 @@ void TruthRecorder::WriteRow(const sim::TruthState& state) {
 
 void TruthRecorder::UpdateApproach(std::size_t leak, const sim::TruthWindow& window) {
   const sim::TruthState& state = window.at(window.last());
-  const double leak_chainage_m = assembly_.leaks[leak].chainage_m;
+  const Leak& at = assembly_.pipeline->leaks[leak];
+  if (state.pipe != at.pipe) return;
   auto& closest = approaches_[leak];
-  if (closest &&
-      std::abs(state.chainage_m - leak_chainage_m) >= std::abs(closest->chainage_m - leak_chainage_m)) {
-    return;
-  }
+  if (closest && std::abs(state.s_m - at.s_m) >= std::abs(closest->s_m - at.s_m)) return;
   closest = state;
+}
+
+/// Where a leak lies on the way taken, or on what was still to come of the planned one; in the drawing, and
+/// without a chainage, when it lies on neither.
+TruthRecorder::LeakPlace TruthRecorder::FindPlace(const Leak& leak) const {
+  const Pipe& pipe = assembly_.network()->pipe(leak.pipe);
+  const Vector3d p_L = pipe.Eval(leak.s_m).p_W;
+  const sim::Way* way = assembly_.motion->way();
+  const auto planned = assembly_.plan->Chainage(leak.pipe, leak.s_m);
+  if (way) {
+    if (const sim::WayLeg* leg = way->FindLeg(leak.pipe)) {
+      return {way->CalcChainage_m(*leg, leak.s_m), p_L + leg->offset_W};
+    }
+    if (!FollowsPlan(*way, *assembly_.plan)) return {std::nullopt, p_L};
+  }
+  if (!planned) return {std::nullopt, p_L};
+  return {planned, assembly_.plan->Eval(*planned).p_W};
 }
 
 std::vector<TrueLeak> TruthRecorder::Close(const acoustics::HydrophoneParams* hydrophone) {
@@ -97,14 +121,13 @@ std::vector<TrueLeak> TruthRecorder::Close(const acoustics::HydrophoneParams* hy
   file.Append(kLeaksHeader);
   std::vector<TrueLeak> leaks;
   for (std::size_t i = 0; i < approaches_.size(); ++i) {
-    const PlacedLeak& placed = assembly_.leaks[i];
-    TrueLeak leak{placed.leak.id,  assembly_.network->pipe(placed.leak.pipe).id,
-                  placed.leak.s_m, placed.chainage_m,
-                  placed.p_W,      placed.state.flow_m3_s,
-                  std::nullopt,    std::nullopt};
+    const Leak& at = assembly_.pipeline->leaks[i];
+    const LeakPlace place = FindPlace(at);
+    TrueLeak leak{at.id,     assembly_.network()->pipe(at.pipe).id,        at.s_m,       place.chainage_m,
+                  place.p_W, assembly_.pipeline->leak_states[i].flow_m3_s, std::nullopt, std::nullopt};
     const auto& closest = approaches_[i];
     const double step_s = assembly_.motion->rate().Period_s();
-    const auto passage = closest ? FindPassage(*closest, placed.chainage_m, step_s) : std::nullopt;
+    const auto passage = closest && place.chainage_m ? FindPassage(*closest, at.s_m, step_s) : std::nullopt;
     if (passage) {
       leak.t_cpa_ns = Nanoseconds(*passage);
       leak.snr_dB = CalcSnr_dB(assembly_, i, hydrophone, *closest);

@@ -27,6 +27,12 @@ class TruthRecorder {
   void WriteRow(const sim::TruthState& state);
   void UpdateApproach(std::size_t leak, const sim::TruthWindow& window);
 
+  struct LeakPlace {
+    std::optional<double> chainage_m;
+    Vector3d p_W;
+  };
+  LeakPlace FindPlace(const Leak& leak) const;
+
   const Assembly& assembly_;
   Rate truth_rate_;
   std::filesystem::path truth_folder_;

@@ -65,6 +65,19 @@ const Joint* Bore::FindJoint(int pipe, double s_m) const {
   return from_end_m < FindArm(near, {pipe, at_to}).reach_m ? &near : nullptr;
 }
 
+bool Bore::Contains(int pipe, double s_m, double offset_m, const Vector3d& p_L) const {
+  const Pipe& p = network_.pipe(pipe);
+  if (offset_m <= p.RadiusAt_m(s_m) && s_m >= 0 && s_m <= p.length_m) return true;
+  const Joint* near = FindJoint(pipe, s_m);
+  if (!near) return false;
+  const Vector3d p_N = p_L - FindArm(*near, {pipe, s_m > 0.5 * p.length_m}).p_end_L;
+  return p_N.norm() <= near->sphere_radius_m ||
+         std::any_of(near->arms.begin(), near->arms.end(), [&](const JointArm& arm) {
+           const double along = p_N.dot(arm.outward);
+           return along >= 0 && (p_N - along * arm.outward).norm() <= arm.radius_m;
+         });
+}
+
 const JointArm& Bore::FindArm(const Joint& joint, PipeEnd end) const {
   const auto found =
       std::find_if(joint.arms.begin(), joint.arms.end(), [&](const JointArm& arm) { return arm.end == end; });

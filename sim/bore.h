@@ -46,6 +46,8 @@ class Bore {
 
   /// The joint whose other arms are felt at `s_m` of a pipe; null along the rest of it, and at smooth joints.
   const Joint* FindJoint(int pipe, double s_m) const;
+  /// True when a point (in the drawing of the spot's pipe) lies inside the bores.
+  bool Contains(int pipe, double s_m, double offset_m, const Vector3d& p_L) const;
   /// Which arm of a joint an end is.
   const JointArm& FindArm(const Joint& joint, PipeEnd end) const;
   /// p in the drawing of `to`'s pipe = p in the drawing of `from`'s pipe + this; zero where the drawing

@@ -10,12 +10,23 @@
 #include "base/route.h"
 #include "base/water.h"
 #include "sim/ball.h"
+#include "sim/bore.h"
 #include "sim/flow_timeline.h"
 #include "sim/truth.h"
+#include "sim/way.h"
 
 namespace piperun::sim {
 
-enum class MotionStatus { kRunning, kArrived, kBallStuck, kLeftNetwork, kNotFinite };
+enum class MotionStatus {
+  kRunning,
+  kArrived,
+  kBallStuck,
+  kStalledAtTee,  ///< no progress where several pipes meet
+  kDeadEnd,       ///< no progress where no water leads on
+  kTooLarge,      ///< came to a pipe it does not fit into
+  kLeftNetwork,   ///< into a reservoir or tank, or through the wall
+  kNotFinite,
+};
 
 /// Everything a motion may need; it keeps references, the caller keeps the objects alive.
 struct MotionContext {
@@ -23,9 +34,12 @@ struct MotionContext {
   std::uint64_t run = 0;
   Vector3d gravity_W{0, 0, -9.80665};
   WaterProperties water;
-  const Network* network = nullptr;
-  const Route* route = nullptr;
+  const Network* network = nullptr;  ///< null: the scenario has no pipes
+  const Route* route = nullptr;      ///< the planned way
+  const Bore* bore = nullptr;        ///< the pipes that are open to the ball
   const FlowTimeline* flow = nullptr;
+  PipeEnd launch;          ///< the pipe the ball is put into, and at which of its ends
+  int retrieve_node = -1;  ///< -1: wherever the water takes it
   BallParams ball;
   double lateral_sd_m = 0;    ///< scatter of the launch position across the pipe
   double stuck_after_s = 30;  ///< no progress for this long means stuck
@@ -44,6 +58,8 @@ class Motion {
   virtual MotionStatus status() const = 0;
   /// Where the crew means to put the ball: the start without its scatter. Asked before the first Step().
   virtual Vector3d planned_start_W() const { return state().X_WB.p; }
+  /// The way taken so far; null for motions that know no pipes.
+  virtual const Way* way() const { return nullptr; }
 };
 
 struct MotionKind {

@@ -27,8 +27,9 @@ struct TruthState {
 
   int pipe = -1;  ///< -1: not in a pipe
   double s_m = 0;
-  double chainage_m = 0;
-  double water_speed_m_s = 0;  ///< bulk velocity Q/A along the route, where the ball is
+  bool reversed = false;       ///< chainage rises where s falls: the ball came in at the pipe's `to` end
+  double chainage_m = 0;       ///< along the way taken
+  double water_speed_m_s = 0;  ///< bulk velocity Q/A where the ball is, positive the way chainage rises
   double pressure_Pa = 0;      ///< gauge, static, at the ball's centre
   bool contact = false;        ///< touching the wall
 };

@@ -1,4 +1,4 @@
-// The ball carried by the water, in the Bullet world.
+// The ball carried by the water through a network, in the Bullet world.
 
 #include <cmath>
 
@@ -6,6 +6,7 @@
 #include "base/number.h"
 #include "base/random.h"
 #include "sim/ball_world.h"
+#include "sim/downstream.h"
 #include "sim/fluid_load.h"
 #include "sim/motion.h"
 
@@ -24,14 +25,19 @@ struct BallInPipeParams : ParamsOf<BallInPipeParams> {
   }
 };
 
-void RequireFit(const BallParams& ball, const Route& route) {
-  const double bore_radius_m = route.pieces().front().radius_m;
-  if (ball.radius_m > kMaxDiameterRatio * bore_radius_m) {
-    throw InputError("the ball's radius is " + FormatNumber(ball.radius_m) + " m; in a bore of " +
-                         FormatNumber(2 * bore_radius_m) + " m it must lie in (0, " +
-                         FormatNumber(kMaxDiameterRatio * bore_radius_m) + "] m",
-                     "ball.radius_m");
-  }
+const Pipe& LaunchPipe(const MotionContext& context) { return context.network->pipe(context.launch.pipe); }
+
+bool Fits(const BallParams& ball, double bore_radius_m) {
+  return ball.radius_m <= kMaxDiameterRatio * bore_radius_m;
+}
+
+void RequireFit(const MotionContext& context) {
+  const double bore_radius_m = LaunchPipe(context).radius_m();
+  if (Fits(context.ball, bore_radius_m)) return;
+  throw InputError("the ball's radius is " + FormatNumber(context.ball.radius_m) + " m; in a bore of " +
+                       FormatNumber(2 * bore_radius_m) + " m it must lie in (0, " +
+                       FormatNumber(kMaxDiameterRatio * bore_radius_m) + "] m",
+                   "ball.radius_m");
 }
 
 /// Across the pipe, the way gravity pulls; in a vertical pipe any direction across.
@@ -41,27 +47,35 @@ Vector3d FindDown(const Vector3d& gravity_W, const Vector3d& tangent_W) {
   return tangent_W.unitOrthogonal();
 }
 
-/// At rest on the invert at chainage 0, moved around the wall by an arc a ~ N(0, lateral_sd): the angle is
-/// a/R. B: x along the pipe, z against gravity across the pipe, y = z x x to the left.
+/// At rest on the invert where chainage begins, moved around the wall by an arc a ~ N(0, lateral_sd): the
+/// angle is a/R. B: x along the pipe, z against gravity across the pipe, y = z x x to the left.
 BallStart MakeStart(const MotionContext& context, double lateral_sd_m) {
-  const RoutePiece& piece = context.route->pieces().front();
-  const CentrelinePoint axis = EvalCentreline(piece.line, 0);
-  const Vector3d x = axis.tangent_W, z = -FindDown(context.gravity_W, x), y = z.cross(x);
+  const Pipe& pipe = LaunchPipe(context);
+  BallStart start;
+  start.spot.pipe = context.launch.pipe;
+  start.spot.s_m = pipe.EndS_m(context.launch.at_to);
+  start.spot.piece = context.launch.at_to ? pipe.centreline.size() - 1 : 0;
+  start.spot.axis = pipe.Eval(start.spot.s_m);
+  const double bore_radius_m = pipe.RadiusAt_m(start.spot.s_m);
+  const Vector3d x = pipe.Inward(context.launch.at_to), z = -FindDown(context.gravity_W, x), y = z.cross(x);
   const double draw = RandomStream(context.seed, "launch", context.run).Normals(0, 0)[0];
-  const double angle = lateral_sd_m * draw / piece.radius_m;
+  const double angle = lateral_sd_m * draw / bore_radius_m;
   Matrix3d R_WB;
   R_WB << x, y, z;
   const Vector3d towards_wall = std::sin(angle) * y - std::cos(angle) * z;
-  BallStart start;
-  start.X_WB = {axis.p_W + (piece.radius_m - context.ball.radius_m) * towards_wall,
+  start.X_LB = {start.spot.axis.p_W + (bore_radius_m - context.ball.radius_m) * towards_wall,
                 Quaterniond(R_WB).normalized()};
   return start;
 }
 
 TubeBall MakeTubeBall(const BallParams& ball, const FluidLoadCoefficients& c) {
   const double r = ball.radius_m;
-  return {r, ball.mass_kg() + c.added_mass_kg, ball.inertia_factor * ball.mass_kg() * r * r, ball.friction,
-          ball.rolling_resistance * r};
+  return {r,
+          ball.mass_kg() + c.added_mass_kg,
+          ball.inertia_factor * ball.mass_kg() * r * r,
+          ball.friction,
+          ball.rolling_resistance * r,
+          ball.compliance()};
 }
 
 class BallInPipe : public Motion {
@@ -69,10 +83,10 @@ class BallInPipe : public Motion {
   BallInPipe(const BallInPipeParams& params, const MotionContext& context)
       : context_(context),
         rate_(params.rate_Hz),
-        field_(*context.route, *context.flow, context.water, context.gravity_W.norm(), context.ball.radius_m),
-        coefficients_(CalcFluidLoadCoefficients(context.ball, context.water,
-                                                context.route->pieces().front().radius_m, context.gravity_W)),
-        world_(*context.route, MakeTubeBall(context.ball, coefficients_), rate_,
+        way_(*context.network, context.launch),
+        field_(*context.bore, *context.flow, context.water, context.gravity_W.norm(), context.ball.radius_m),
+        coefficients_(CalcFluidLoadCoefficients(context.ball, context.water, context.gravity_W)),
+        world_(*context.bore, MakeTubeBall(context.ball, coefficients_), rate_,
                MakeStart(context, context.lateral_sd_m),
                [this](const BallInstant& ball) { return EvalLoad(ball); }) {
     Publish();
@@ -82,66 +96,108 @@ class BallInPipe : public Motion {
   Rate rate() const override { return rate_; }
   const TruthState& state() const override { return state_; }
   MotionStatus status() const override { return status_; }
-  Vector3d planned_start_W() const override { return MakeStart(context_, 0).X_WB.p; }
+  Vector3d planned_start_W() const override { return MakeStart(context_, 0).X_LB.p; }
+  const Way* way() const override { return &way_; }
 
   void Step() override {
     world_.Step();
+    if (world_.state().crossing) way_.Cross(*world_.state().crossing);
     Publish();
     UpdateStatus();
   }
 
  private:
   BallLoad EvalLoad(const BallInstant& ball) {
-    water_ = field_.Eval(ball.spot, ball.p_WB, ball.time);
+    water_ = field_.Eval(ball.spot, ball.p_LB, ball.time);
+    if (water_.bore_radius_m * kMaxDiameterRatio < context_.ball.radius_m) too_large_ = true;
+    if (too_large_) return {};  // beyond what drag is known for; the run is over
     const FluidLoad load = CalcFluidLoad(coefficients_, ball.v_WB_W, ball.w_WB_W, water_);
     return {load.Force_W_N(), load.spin_torque_W_N_m};
   }
 
+  const Pipe& PipeOf(const NetworkSpot& spot) const { return context_.network->pipe(spot.pipe); }
+
   void Publish() {
     const BallState& ball = world_.state();
-    const Quaterniond q_BW = ball.X_WB.q.conjugate();
+    const Quaterniond q_BW = ball.X_LB.q.conjugate();
+    const WayLeg& leg = way_.leg();
     state_.time = ball.time;
-    state_.X_WB = ball.X_WB;
+    state_.X_WB = {ball.X_LB.p + leg.offset_W, ball.X_LB.q};
     state_.v_WB_W = ball.v_WB_W;
     state_.w_WB_B = q_BW * ball.w_WB_W;
     state_.f_WB_B = q_BW * (ball.a_WB_W - context_.gravity_W);
     state_.v_step_W = ball.v_step_W;
     state_.dtheta_B_rad = ball.dtheta_B_rad;
-    const RoutePiece& piece = context_.route->pieces()[ball.spot.piece];
-    state_.pipe = piece.pipe;
-    state_.s_m = piece.PipeS_m(ball.spot.chainage_m);
-    state_.chainage_m = ball.spot.chainage_m;
-    state_.water_speed_m_s = water_.bulk_speed_m_s;
+    state_.pipe = ball.spot.pipe;
+    state_.s_m = ball.spot.s_m;
+    state_.reversed = leg.reversed;
+    state_.chainage_m = way_.Chainage_m(ball.spot.s_m);
+    state_.water_speed_m_s = leg.reversed ? -water_.bulk_speed_m_s : water_.bulk_speed_m_s;
     state_.pressure_Pa = water_.pressure_Pa;
-    const double offset_m = (ball.X_WB.p - ball.spot.axis.p_W).norm();
-    state_.contact = piece.radius_m - context_.ball.radius_m - offset_m < kTouching_m;
+    const double offset_m = (ball.X_LB.p - ball.spot.axis.p_W).norm();
+    state_.contact =
+        ball.normal_force_N > 0 ||
+        PipeOf(ball.spot).RadiusAt_m(ball.spot.s_m) - context_.ball.radius_m - offset_m < kTouching_m;
   }
 
   void UpdateStatus() {
     if (status_ != MotionStatus::kRunning) return;
-    const RouteSpot& spot = world_.state().spot;
     if (state_.chainage_m >= progress_m_ + kProgress_m) {
       progress_m_ = state_.chainage_m;
       progress_time_ = state_.time;
     }
-    const double offset_m = (state_.X_WB.p - spot.axis.p_W).norm();
+    status_ = FindStatus();
+  }
+
+  MotionStatus FindStatus() const {
     if (!(state_.X_WB.p.allFinite() && state_.f_WB_B.allFinite() && state_.w_WB_B.allFinite())) {
-      status_ = MotionStatus::kNotFinite;
-    } else if (offset_m > context_.route->pieces()[spot.piece].radius_m ||
-               state_.chainage_m < -context_.ball.radius_m) {
-      status_ = MotionStatus::kLeftNetwork;
-    } else if (state_.chainage_m >= context_.route->length_m()) {
-      status_ = MotionStatus::kArrived;
-    } else if (Seconds(state_.time - progress_time_) >= context_.stuck_after_s) {
-      status_ = MotionStatus::kBallStuck;
+      return MotionStatus::kNotFinite;
     }
+    const BallState& ball = world_.state();
+    const double offset_m = (ball.X_LB.p - ball.spot.axis.p_W).norm();
+    if (!context_.bore->Contains(ball.spot.pipe, ball.spot.s_m, offset_m, ball.X_LB.p)) {
+      return MotionStatus::kLeftNetwork;
+    }
+    if (const int node = NodePassed(); node >= 0) {
+      if (node == context_.retrieve_node) return MotionStatus::kArrived;
+      if (context_.network->nodes()[static_cast<std::size_t>(node)].open_water)
+        return MotionStatus::kLeftNetwork;
+    }
+    if (too_large_) return MotionStatus::kTooLarge;
+    if (Seconds(state_.time - progress_time_) >= context_.stuck_after_s) return FindWhyStuck();
+    return MotionStatus::kRunning;
+  }
+
+  /// The node at whose far side the ball has come with this step, or beyond which it is at a dead end; -1:
+  /// none.
+  int NodePassed() const {
+    const BallState& ball = world_.state();
+    if (ball.crossing) return context_.network->NodeAt(ball.crossing->left);
+    const Pipe& pipe = PipeOf(ball.spot);
+    if (ball.spot.s_m >= pipe.length_m) return pipe.to;
+    return ball.spot.s_m < 0 ? pipe.from : -1;
+  }
+
+  MotionStatus FindWhyStuck() const {
+    const NetworkSpot& spot = world_.state().spot;
+    const Downstream downstream(*context_.bore, *context_.flow, state_.time);
+    if (const Joint* joint = context_.bore->FindJoint(spot.pipe, spot.s_m)) {
+      if (downstream.LeadsIntoNarrower(*joint, context_.ball.radius_m / kMaxDiameterRatio))
+        return MotionStatus::kTooLarge;
+      if (joint->dead_end()) return MotionStatus::kDeadEnd;
+      if (joint->arms.size() > 2) return MotionStatus::kStalledAtTee;
+    }
+    return downstream.LeadsOn(spot.pipe, context_.retrieve_node) ? MotionStatus::kBallStuck
+                                                                 : MotionStatus::kDeadEnd;
   }
 
   MotionContext context_;
   Rate rate_;
+  Way way_;
   FlowField field_;
   FluidLoadCoefficients coefficients_;
   WaterAtBall water_;  // where and when the world evaluated the loads last: at its present state
+  bool too_large_ = false;
   BallWorld world_;
   TruthState state_;
   MotionStatus status_ = MotionStatus::kRunning;
@@ -150,9 +206,9 @@ class BallInPipe : public Motion {
 };
 
 std::unique_ptr<Motion> Make(const Params& params, const MotionContext& context) {
-  if (!context.route) throw InputError("a ball in a pipe needs a network with at least one pipe", "kind");
-  Demand(context.flow != nullptr, "whoever builds a route solves its flow");
-  RequireFit(context.ball, *context.route);
+  if (!context.bore) throw InputError("a ball in a pipe needs a network with at least one pipe", "kind");
+  Demand(context.flow != nullptr, "whoever builds a network solves its flow");
+  RequireFit(context);
   return std::make_unique<BallInPipe>(static_cast<const BallInPipeParams&>(params), context);
 }
 
@@ -160,7 +216,7 @@ std::unique_ptr<Motion> Make(const Params& params, const MotionContext& context)
 
 namespace motions::ball_in_pipe {
 MotionKind Kind() {
-  return {"ball_in_pipe", "A ball carried through the route by the water, in a Bullet scene.",
+  return {"ball_in_pipe", "A ball carried through the network by the water, in a Bullet scene.",
           MakeParams<BallInPipeParams>, Make};
 }
 }  // namespace motions::ball_in_pipe

@@ -1,0 +1,195 @@
+#include "scenarios/pipeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/check.h"
+#include "base/number.h"
+#include "scenarios/inp_network.h"
+#include "scenarios/leak_list.h"
+#include "scenarios/network_params.h"
+#include "sim/downstream.h"
+#include "sim/hydraulics.h"
+#include "sim/network/inp_reader.h"
+#include "sim/network/network_flow.h"
+#include "sim/network/pipe_leak.h"
+#include "sim/network/simulation.h"
+
+namespace piperun::scenarios {
+namespace {
+
+constexpr double kAccuracy = 1e-6;  // flows balance to this part of the whole, where the file asks for less
+constexpr double kMaxDiameterRatio = 0.95;
+
+struct Stops {
+  int launch = 0;
+  std::vector<int> via;
+  int retrieve = -1;
+};
+
+Stops FindStops(const MissionParams& mission, const Network& network) {
+  Stops stops;
+  stops.launch = ResolveNode(network, mission.launch, "mission.launch");
+  for (std::size_t i = 0; i < mission.via.size(); ++i) {
+    stops.via.push_back(
+        ResolveNode(network, mission.via[i].node, "mission.via[" + std::to_string(i) + "].node"));
+  }
+  if (!mission.retrieve.empty()) {
+    stops.retrieve = ResolveNode(network, mission.retrieve, "mission.retrieve");
+  }
+  return stops;
+}
+
+void Append(const std::vector<RouteLeg>& more, std::vector<RouteLeg>& legs) {
+  legs.insert(legs.end(), more.begin(), more.end());
+}
+
+/// A pipeline written down pipe by pipe: along its route, in series.
+Pipeline BuildSeries(const Scenario& scenario, const WaterProperties& water) {
+  Network network = MakeNetwork(scenario.network);
+  const Stops stops = FindStops(scenario.mission, network);
+  if (stops.retrieve < 0) {
+    throw InputError("the node is missing; where water only enters, name where it leaves",
+                     "mission.retrieve");
+  }
+  std::vector<RouteLeg> plan;
+  int from = stops.launch;
+  for (const int via : stops.via) Append(FindRoute(network, std::exchange(from, via), via).legs(), plan);
+  Append(FindRoute(network, from, stops.retrieve).legs(), plan);
+  std::vector<Leak> leaks = MakeListedLeaks(scenario, network);
+  const std::vector<Leak> drawn = DrawLeaks(scenario, network, plan, leaks);
+  leaks.insert(leaks.end(), drawn.begin(), drawn.end());
+  sim::SteadyFlow flow = sim::SolveSteadyFlow(network, Route(network, plan),
+                                              {scenario.flow.inlet_m3_s, scenario.flow.inlet_pressure_Pa},
+                                              leaks, water, scenario.gravity_m_s2);
+  return {scenario.network, std::move(network),    std::move(flow.timeline),
+          std::move(leaks), std::move(flow.leaks), stops.launch,
+          stops.retrieve,   std::move(plan),       {}};
+}
+
+/// The hydraulics of an EPANET file from its beginning to `until_s` (or its own end), instant by instant.
+std::vector<sim::HydraulicStep> SolvePeriod(const sim::HydraulicModel& model, double until_s) {
+  std::vector<sim::HydraulicStep> steps;
+  sim::HydraulicSimulation simulation(model);
+  do {
+    const sim::SolveReport& report = simulation.Solve();
+    if (!report.converged()) {
+      throw HydraulicsDiverged("the hydraulics at " + std::to_string(simulation.time_s()) + " s " +
+                               Describe(report, model));
+    }
+    steps.push_back({simulation.time_s(), false, report, simulation.state()});
+  } while (static_cast<double>(simulation.time_s()) < until_s && simulation.Advance());
+  return steps;
+}
+
+std::string BallText(const sim::BallParams& ball) {
+  return "a ball of " + FormatNumber(2000 * ball.radius_m) + " mm";
+}
+
+/// The way along the water at the launch: through the nodes named, or where most of it goes.
+std::vector<RouteLeg> PlanAlongWater(const Scenario& scenario, const Network& network,
+                                     const sim::FlowTimeline& flow, const Stops& stops) {
+  const sim::Bore bore(network);
+  const sim::Downstream downstream(bore, flow, TrueTime{});
+  const double min_radius_m = scenario.ball.radius_m / kMaxDiameterRatio;
+  std::vector<int> targets = stops.via;
+  if (stops.retrieve >= 0) targets.push_back(stops.retrieve);
+  std::vector<RouteLeg> plan;
+  int from = stops.launch;
+  for (const int target : targets) {
+    const auto leg = downstream.FindFastestWay(from, target, min_radius_m);
+    if (!leg || leg->empty()) {
+      throw InputError(
+          "at the launch no water leads from '" + network.nodes()[static_cast<std::size_t>(from)].id +
+              "' to '" + network.nodes()[static_cast<std::size_t>(target)].id + "' through pipes that " +
+              BallText(scenario.ball) + " passes; `piperun network FILE --from NODE` lists where it leads",
+          target == stops.retrieve ? "mission.retrieve" : "mission.via");
+    }
+    Append(*leg, plan);
+    from = target;
+  }
+  if (stops.retrieve < 0) Append(downstream.FollowMainFlow(from, min_radius_m), plan);
+  if (plan.empty()) {
+    throw InputError(
+        "at the launch no water leaves this node through a pipe that " + BallText(scenario.ball) + " passes",
+        "mission.launch");
+  }
+  return plan;
+}
+
+/// An EPANET file made ready to be solved with leaks in it.
+class InpPipeline {
+ public:
+  InpPipeline(const Scenario& scenario, const WaterProperties& water)
+      : scenario_(scenario),
+        water_(water),
+        model_(sim::ReadInp(scenario.network.inp_text, scenario.network.inp)),
+        drawing_(DrawNetwork(model_, {scenario.network.map_unit_m, scenario.network.bend_radius_diameters,
+                                      scenario.network.material_rules_text})),
+        network_(MakeNetwork(drawing_.network)),
+        stops_(FindStops(scenario.mission, network_)) {
+    model_.options.accuracy = std::min(model_.options.accuracy, kAccuracy);
+  }
+
+  Pipeline Build() {
+    std::vector<Leak> leaks = MakeListedLeaks(scenario_, network_);
+    if (scenario_.random_leaks.count > 0) {
+      const auto plan = PlanAlongWater(scenario_, network_, Solve(leaks).timeline, stops_);
+      const std::vector<Leak> drawn = DrawLeaks(scenario_, network_, plan, leaks);
+      leaks.insert(leaks.end(), drawn.begin(), drawn.end());
+    }
+    sim::NetworkFlow flow = Solve(leaks);
+    std::vector<RouteLeg> plan = PlanAlongWater(scenario_, network_, flow.timeline, stops_);
+    std::vector<std::string> notes = model_.notes;
+    notes.insert(notes.end(), drawing_.notes.begin(), drawing_.notes.end());
+    return {std::move(drawing_.network),
+            std::move(network_),
+            std::move(flow.timeline),
+            std::move(leaks),
+            std::move(flow.leaks),
+            stops_.launch,
+            stops_.retrieve,
+            std::move(plan),
+            std::move(notes)};
+  }
+
+ private:
+  sim::NetworkFlow Solve(const std::vector<Leak>& leaks) const {
+    const double launch_s = scenario_.flow.launch_time_s;
+    const sim::LeakyModel leaky = sim::InsertLeaks(model_, MakePipeLeaks(leaks));
+    const auto steps = SolvePeriod(leaky.model, launch_s + scenario_.mission.time_limit_s);
+    return sim::MakeNetworkFlow(network_, leaky, steps, launch_s, water_, scenario_.gravity_m_s2);
+  }
+
+  std::vector<sim::PipeLeak> MakePipeLeaks(const std::vector<Leak>& leaks) const {
+    std::vector<sim::PipeLeak> holes;
+    for (std::size_t i = 0; i < leaks.size(); ++i) {
+      const Leak& leak = leaks[i];
+      if (leak.pipe >= static_cast<int>(model_.pipes.size())) {
+        throw InputError("'" + network_.pipe(leak.pipe).id + "' is a pump or valve; a leak lies in a pipe",
+                         "leaks[" + std::to_string(i) + "].pipe");
+      }
+      holes.push_back({leak.id, leak.pipe, leak.s_m,
+                       0.25 * std::numbers::pi * leak.hole_diameter_m * leak.hole_diameter_m,
+                       leak.area_slope_m, leak.discharge_coefficient});
+    }
+    return holes;
+  }
+
+  const Scenario& scenario_;
+  const WaterProperties& water_;
+  sim::HydraulicModel model_;
+  InpDrawing drawing_;
+  Network network_;
+  Stops stops_;
+};
+
+}  // namespace
+
+Pipeline BuildPipeline(const Scenario& scenario, const WaterProperties& water) {
+  if (scenario.network.inp.empty()) return BuildSeries(scenario, water);
+  return InpPipeline(scenario, water).Build();
+}
+
+}  // namespace piperun::scenarios
