@@ -20,6 +20,8 @@ struct Spelling {
 // spelling.
 constexpr Spelling kSpellings[] = {
     {"_dB_m", "", 1},
+    {"_N_s_m", "", 1},
+    {"_N_m", "", 1},
     {"_s_m_rad", "", 1},
     {"_rad_s2_sqrtHz", "_deg_s2_sqrtHz", kDegree},
     {"_rad_s_sqrtHz", "_deg_s_sqrtHz", kDegree},
@@ -32,7 +34,10 @@ constexpr Spelling kSpellings[] = {
     {"_m3_s", "_L_s", 1e-3},
     {"_m3_s", "_L_min", 1e-3 / 60},
     {"_m3_s", "_m3_h", 1.0 / 3600},
+    {"_m_s", "", 1},
     {"_rad", "_deg", kDegree},
+    {"_s", "_min", 60},
+    {"_s", "_h", 3600},
     {"_Pa", "_bar", 1e5},
     {"_Pa", "_kPa", 1e3},
     {"_T", "_uT", 1e-6},
