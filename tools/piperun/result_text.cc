@@ -2,6 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <optional>
+
 #include "tools/piperun/table.h"
 
 namespace piperun::tools {
@@ -14,6 +17,32 @@ using scenarios::TrackScore;
 using scenarios::TrueLeak;
 
 std::string Metres(double value) { return fmt::format("{:.3f}", value); }
+
+std::string Metres(const std::optional<double>& value) { return value ? Metres(*value) : "off the way"; }
+
+/// Ids in order; the middle of a long list is left out.
+std::string Chain(const std::vector<std::string>& ids) {
+  constexpr std::size_t kShown = 6;
+  std::string text;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (ids.size() > 2 * kShown && i == kShown) {
+      i = ids.size() - kShown;
+      text += " > ...";
+    }
+    text += (text.empty() ? "" : " > ") + ids[i];
+  }
+  return text;
+}
+
+std::string DescribeWay(const RunResult& result) {
+  if (result.route_pipes.size() < 2 && result.route_pipes == result.planned_pipes) return "";
+  std::string text = "Way: " + Chain(result.route_pipes) + "\n";
+  const bool as_planned =
+      result.route_pipes.size() <= result.planned_pipes.size() &&
+      std::equal(result.route_pipes.begin(), result.route_pipes.end(), result.planned_pipes.begin());
+  if (!as_planned) text += "Planned: " + Chain(result.planned_pipes) + "\n";
+  return text;
+}
 
 std::string LeakRows(const RunResult& result, const EstimatorResult& estimator) {
   Table table({"leak", "true_m", "estimated_m", "error_m", "sigma_m", "confidence"});
@@ -55,7 +84,8 @@ std::string DescribeResult(const RunResult& result) {
       fmt::format("{}: {}, {:.1f} s simulated in {:.2f} s ({:.0f} x real time)", result.scenario,
                   result.status, result.duration_s, result.wall_s, result.duration_s / result.wall_s);
   if (result.route_length_m > 0) text += fmt::format(", route {:.2f} m", result.route_length_m);
-  text += "\n";
+  text += "\n" + DescribeWay(result);
+  for (const std::string& note : result.notes) text += "Note: " + note + "\n";
   for (const EstimatorResult& estimator : result.estimators) {
     text += fmt::format("\nLeaks by '{}': distance along the pipe from the launch\n", estimator.name);
     text += LeakRows(result, estimator);
