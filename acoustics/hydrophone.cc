@@ -24,7 +24,7 @@ double RoundToEven(double x) {
 }
 
 bool IsFinite(const ListenerState& s) {
-  return std::isfinite(s.chainage_m) && std::isfinite(s.water_speed_m_s) && std::isfinite(s.slip_speed_m_s) &&
+  return std::isfinite(s.s_m) && std::isfinite(s.water_speed_m_s) && std::isfinite(s.slip_speed_m_s) &&
          std::isfinite(s.bore_radius_m);
 }
 

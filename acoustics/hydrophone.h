@@ -77,7 +77,8 @@ class Hydrophone {
 };
 
 /// Ratio of one leak's power to the power of everything that is not a leak (background, self noise, rounding)
-/// in the record, at a listening place, 10 log10, over a band. Minus infinity for a silent leak. Throws
+/// in the record, at a listening place, 10 log10, over a band. Minus infinity for a silent leak and where no
+/// pipe leads. Throws
 /// InputError unless 0 < f_low_Hz < f_high_Hz <= rate/2.
 double CalcLeakSnr_dB(const AcousticScene& scene, std::size_t leak, const HydrophoneParams& params,
                       const ListenerState& listener, double f_low_Hz, double f_high_Hz);

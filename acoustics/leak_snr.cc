@@ -22,13 +22,15 @@ double CalcLeakSnr_dB(const AcousticScene& scene, std::size_t leak, const Hydrop
                       const ListenerState& listener, double f_low_Hz, double f_high_Hz) {
   Demand(leak < scene.leaks.size(), "the scene has that leak");
   RequireBand(f_low_Hz, f_high_Hz, params.rate_Hz);
+  const SoundingLeak& sounding = scene.leaks[leak];
+  const PathTree paths = FindPaths(scene.pipes, sounding.place());
   constexpr int kCells = 2048;  // midpoint rule: 1e-5 for a power law of the third order over three decades
   const double cell_Hz = (f_high_Hz - f_low_Hz) / kCells;
   double signal = 0, noise = 0;
   for (int i = 0; i < kCells; ++i) {
     const double f_Hz = f_low_Hz + (i + 0.5) * cell_Hz;
     const double gain = CalcHighPassGain(params, f_Hz);
-    signal += gain * CalcLeakPsd(scene, scene.leaks[leak], listener.chainage_m, f_Hz);
+    signal += gain * CalcLeakPsd(scene, sounding, paths, listener.place(), f_Hz);
     noise += gain * CalcBackgroundPsd(scene, listener, params.face_radius_m, f_Hz) +
              CalcSelfNoisePsd(params, f_Hz) + CalcConverterNoisePsd(params);
   }

@@ -1,6 +1,8 @@
 #include "acoustics/listener_spectrum.h"
 
 #include <algorithm>
+#include <ranges>
+#include <utility>
 
 #include "acoustics/decay.h"
 #include "acoustics/flow_noise.h"
@@ -35,24 +37,22 @@ std::vector<float> TabulateSteady(const AcousticScene& scene, const HydrophonePa
 
 ListenerSpectrum::ListenerSpectrum(const AcousticScene& scene, const HydrophoneParams& params,
                                    double bin_width_Hz, std::size_t bins)
-    : legs_(scene.legs),
-      power_loss_(bins),
+    : pipes_(scene.pipes),
       flow_noise_(scene.ambient.flow_noise),
       flow_noise_table_(scene.water, params.face_radius_m, bin_width_Hz,
                         TabulateHighPass(params, bin_width_Hz, bins)) {
-  Demand(!legs_.empty(), "an acoustic scene has at least one leg");
   const std::vector<double> high_pass = TabulateHighPass(params, bin_width_Hz, bins);
   steady_ = TabulateSteady(scene, params, high_pass, bin_width_Hz);
-  TabulateLosses(scene, bin_width_Hz);
+  TabulateLosses(bin_width_Hz);
   TabulateLeaks(scene, high_pass, bin_width_Hz);
 }
 
-void ListenerSpectrum::TabulateLosses(const AcousticScene& scene, double bin_width_Hz) {
+void ListenerSpectrum::TabulateLosses(double bin_width_Hz) {
   std::vector<PipeWave> waves;
-  for (const AcousticLeg& leg : scene.legs) {
-    const auto known = std::find(waves.begin(), waves.end(), leg.wave);
-    wave_of_leg_.push_back(static_cast<std::size_t>(known - waves.begin()));
-    if (known == waves.end()) waves.push_back(leg.wave);
+  for (const AcousticPipe& pipe : pipes_) {
+    const auto known = std::find(waves.begin(), waves.end(), pipe.wave);
+    wave_of_pipe_.push_back(static_cast<std::size_t>(known - waves.begin()));
+    if (known == waves.end()) waves.push_back(pipe.wave);
   }
   path_m_.resize(waves.size());
   for (const PipeWave& wave : waves) {
@@ -66,41 +66,65 @@ void ListenerSpectrum::TabulateLosses(const AcousticScene& scene, double bin_wid
 void ListenerSpectrum::TabulateLeaks(const AcousticScene& scene, const std::vector<double>& high_pass,
                                      double bin_width_Hz) {
   for (const SoundingLeak& leak : scene.leaks) {
-    leaks_.push_back({leak.chainage_m, std::vector<float>(bins())});
+    LeakRow& row = leaks_.emplace_back();
+    row.paths = FindPaths(pipes_, leak.place());
+    row.psd.resize(bins());
     for (std::size_t k = 0; k < bins(); ++k) {
       const double f_Hz = static_cast<double>(k) * bin_width_Hz;
-      leaks_.back().psd[k] = static_cast<float>(high_pass[k] * CalcLeakPsdAtHole(scene, leak, f_Hz));
+      row.psd[k] = static_cast<float>(high_pass[k] * CalcLeakPsdAtHole(scene, leak, f_Hz));
     }
+    for (WayToEnd& way : row.ways) way.other_loss.resize(bins());
   }
 }
 
 void ListenerSpectrum::Calc(const ListenerState& listener, std::span<float> psd) {
   std::copy(steady_.begin(), steady_.end(), psd.begin());
+  if (listener.pipe < 0) return;
   if (flow_noise_) {
     flow_noise_table_.AddTo(psd, CalcEddySpeed(listener.slip_speed_m_s, listener.water_speed_m_s),
                             listener.bore_radius_m);
   }
-  for (const LeakRow& leak : leaks_) AddLeak(leak, listener.chainage_m, psd);
+  if (listener.pipe != pipe_) EnterPipe(listener.pipe);
+  for (const LeakRow& leak : leaks_) AddLeak(leak, listener.place(), psd);
 }
 
-void ListenerSpectrum::AddLeak(const LeakRow& leak, double chainage_m, std::span<float> psd) {
-  CalcPowerLoss(leak.chainage_m, chainage_m);
-  // losses grow with frequency: the first inaudible bin ends the row
-  const auto silent = std::lower_bound(power_loss_.begin(), power_loss_.end(), kInaudibleLoss);
-  const auto audible = static_cast<std::size_t>(silent - power_loss_.begin());
-  for (std::size_t k = 0; k < audible; ++k) psd[k] += leak.psd[k] * CalcDecay(power_loss_[k]);
-}
-
-/// power_loss_ = integral of 2 alpha ds between two chainages, per bin.
-void ListenerSpectrum::CalcPowerLoss(double from_m, double to_m) {
-  std::fill(path_m_.begin(), path_m_.end(), 0);
-  for (std::size_t i = 0; i < legs_.size(); ++i) {
-    path_m_[wave_of_leg_[i]] += CalcPathInLeg(legs_, i, from_m, to_m);
+void ListenerSpectrum::EnterPipe(int pipe) {
+  Demand(static_cast<std::size_t>(pipe) < pipes_.size(), "the listener's pipe is in the acoustic scene");
+  pipe_ = pipe;
+  const AcousticPipe& own = pipes_[static_cast<std::size_t>(pipe)];
+  for (LeakRow& leak : leaks_) {
+    TabulateWay(leak.paths, own.from_node, leak.ways[static_cast<std::size_t>(WayIn::kFromEnd)]);
+    TabulateWay(leak.paths, own.to_node, leak.ways[static_cast<std::size_t>(WayIn::kToEnd)]);
   }
-  std::fill(power_loss_.begin(), power_loss_.end(), 0.F);
+}
+
+void ListenerSpectrum::TabulateWay(const PathTree& paths, int node, WayToEnd& way) {
+  std::fill(path_m_.begin(), path_m_.end(), 0);
+  std::fill(way.other_loss.begin(), way.other_loss.end(), 0.F);
+  WalkBack(paths, node, [this](int pipe, double length_m) {
+    path_m_[wave_of_pipe_[static_cast<std::size_t>(pipe)]] += length_m;
+  });
+  way.own_m = std::exchange(path_m_[wave_of_pipe_[static_cast<std::size_t>(pipe_)]], 0);
   for (std::size_t w = 0; w < path_m_.size(); ++w) {
+    if (path_m_[w] == 0) continue;
     const auto path_m = static_cast<float>(path_m_[w]);
-    for (std::size_t k = 0; k < power_loss_.size(); ++k) power_loss_[k] += path_m * power_loss_1_m_[w][k];
+    for (std::size_t k = 0; k < bins(); ++k) way.other_loss[k] += path_m * power_loss_1_m_[w][k];
+  }
+}
+
+void ListenerSpectrum::AddLeak(const LeakRow& leak, const PipePlace& place, std::span<float> psd) const {
+  const Arrival arrival = FindArrival(pipes_, leak.paths, place);
+  if (arrival.way == WayIn::kNone) return;
+  const WayToEnd& way = leak.ways[static_cast<std::size_t>(arrival.way)];
+  const float* other = way.other_loss.data();
+  const float* loss_1_m = power_loss_1_m_[wave_of_pipe_[static_cast<std::size_t>(place.pipe)]].data();
+  const auto own_m = static_cast<float>(way.own_m + arrival.length_m);
+  // losses grow with frequency: the first inaudible bin ends the row
+  const auto audible = *std::ranges::partition_point(
+      std::views::iota(std::size_t{1}, bins()),
+      [&](std::size_t k) { return other[k] + own_m * loss_1_m[k] < kInaudibleLoss; });
+  for (std::size_t k = 1; k < audible; ++k) {
+    psd[k] += leak.psd[k] * CalcDecay(other[k] + own_m * loss_1_m[k]);
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -11,8 +12,10 @@
 namespace piperun::acoustics {
 
 /// The spectrum a listener's record has at its place, tabulated on the bins of a frame: what does not change
-/// is computed once, what changes with place and speed costs one exponential per bin and leak. Equals the
-/// pure functions of scene.h and hydrophone.h within 0.03 dB.
+/// is computed once, what changes from pipe to pipe when the listener comes into another one, what changes
+/// with place and speed costs one exponential per bin and leak. Equals the pure functions of scene.h and
+/// hydrophone.h within 0.03 dB. Where a leak has lost 200 dB or more it is silent, bin by bin; a leak that
+/// has lost so much in all of them is left out.
 class ListenerSpectrum {
  public:
   /// `bins` bins at k * bin_width_Hz, k = 0, 1, ...
@@ -23,23 +26,30 @@ class ListenerSpectrum {
   void Calc(const ListenerState& listener, std::span<float> psd);
 
  private:
+  /// The way from a leak to an end of the listener's pipe.
+  struct WayToEnd {
+    double own_m = 0;               // through pipes with the wave of the listener's
+    std::vector<float> other_loss;  // through the others: integral of 2 alpha ds, per bin
+  };
   struct LeakRow {
-    double chainage_m;
-    std::vector<float> psd;  // at the hole, behind the input stage
+    PathTree paths;
+    std::vector<float> psd;        // at the hole, behind the input stage
+    std::array<WayToEnd, 3> ways;  // by WayIn; the direct one stays empty
   };
 
   std::size_t bins() const { return steady_.size(); }
-  void TabulateLosses(const AcousticScene& scene, double bin_width_Hz);
+  void TabulateLosses(double bin_width_Hz);
   void TabulateLeaks(const AcousticScene& scene, const std::vector<double>& high_pass, double bin_width_Hz);
-  void CalcPowerLoss(double from_m, double to_m);
-  void AddLeak(const LeakRow& leak, double chainage_m, std::span<float> psd);
+  void EnterPipe(int pipe);
+  void TabulateWay(const PathTree& paths, int node, WayToEnd& way);
+  void AddLeak(const LeakRow& leak, const PipePlace& place, std::span<float> psd) const;
 
-  std::vector<AcousticLeg> legs_;
-  std::vector<std::size_t> wave_of_leg_;            // legs of the same pipe share a row of losses
+  std::vector<AcousticPipe> pipes_;
+  std::vector<std::size_t> wave_of_pipe_;           // pipes of the same make share a row of losses
   std::vector<std::vector<float>> power_loss_1_m_;  // per wave and bin: 2 alpha
   std::vector<double> path_m_;                      // scratch, per wave
-  std::vector<float> power_loss_;                   // scratch, per bin
   std::vector<LeakRow> leaks_;
+  int pipe_ = -1;  // the one that the leaks' ways lead to
   std::vector<float> steady_;
   bool flow_noise_;
   FlowNoiseTable flow_noise_table_;

@@ -37,11 +37,4 @@ struct PipeWave {
 PipeWave CalcPipeWave(double bore_diameter_m, double wall_thickness_m, const WallMaterial& wall,
                       const WaterProperties& water);
 
-/// A stretch of the route with one wave.
-struct AcousticLeg {
-  double chainage_begin_m = 0;
-  double length_m = 0;
-  PipeWave wave;
-};
-
 }  // namespace piperun::acoustics

@@ -1,23 +1,81 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "acoustics/pipe_wave.h"
 
 namespace piperun::acoustics {
 
-/// Index of the leg that holds `chainage_m`; the first and the last leg go on beyond the route's ends.
-std::size_t FindLeg(const std::vector<AcousticLeg>& legs, double chainage_m);
+/// One pipe of a network as sound sees it: what it joins and the wave it carries.
+struct AcousticPipe {
+  int from_node = 0;  ///< nodes are numbered from 0
+  int to_node = 0;
+  double length_m = 0;
+  PipeWave wave;
+};
 
-/// Length in metres of the part of leg `i` that lies between two chainages, in either order. The parts of
-/// all legs add up to the distance.
-double CalcPathInLeg(const std::vector<AcousticLeg>& legs, std::size_t i, double from_m, double to_m);
+/// A place in a network, s along the pipe from its `from` node. Beyond its ends (a ball's centre past a dead
+/// end) a pipe goes on as it is.
+struct PipePlace {
+  int pipe = -1;  ///< -1: in no pipe
+  double s_m = 0;
+};
 
-/// Loss of the plane wave on its way between two chainages: the integral of alpha(f) in Np. The pressure
-/// falls to exp(-loss), the power to exp(-2 loss). The wave runs both ways alike and passes from leg to leg
-/// as if their impedances matched: transmission, reflections, branches and the near field within a diameter
-/// of the hole belong to a field of the whole network and are not in it.
-double CalcPathLoss_Np(const std::vector<AcousticLeg>& legs, double from_m, double to_m, double f_Hz);
+/// Ways are compared by their loss at this frequency, so that there is one way for the whole band. Between
+/// pipes of one material their order is nearly that at any other frequency, the wall's share being ~ f.
+inline constexpr double kPathFrequency_Hz = 1000;
+
+/// How the way of least loss from a source comes to a node.
+struct PathStep {
+  double loss_Np = std::numeric_limits<double>::infinity();  ///< of the whole way, at kPathFrequency_Hz
+  int pipe = -1;                                             ///< the last one; -1: no way leads here
+  double length_m = 0;                                       ///< of that pipe, as far as it is on the way
+  int previous_node = -1;                                    ///< before that pipe; -1: the source lies in it
+};
+
+/// The ways of least loss from a source to all nodes.
+struct PathTree {
+  PipePlace source;
+  std::vector<PathStep> nodes;
+};
+
+/// Ways of least loss at kPathFrequency_Hz (Dijkstra, Numer. Math. 1, 269 (1959)), both directions of the
+/// source's own pipe included. Of ways with equal loss the one over the node with the lower index is taken,
+/// then the one through the pipe with the lower index. Pipes must have a length > 0, and the source must lie
+/// within its pipe.
+PathTree FindPaths(const std::vector<AcousticPipe>& pipes, const PipePlace& source);
+
+/// Which way the sound comes: along the source's own pipe, or by an end of the listener's.
+enum class WayIn : std::size_t { kDirect, kFromEnd, kToEnd, kNone };
+
+/// The last stretch of the way to a place.
+struct Arrival {
+  WayIn way = WayIn::kNone;
+  double length_m = 0;  ///< in the pipe of the place
+};
+
+/// The arrival with the least loss at kPathFrequency_Hz; of equals the first of WayIn. kNone where no pipe
+/// leads and for a place in no pipe.
+Arrival FindArrival(const std::vector<AcousticPipe>& pipes, const PathTree& paths, const PipePlace& place);
+
+/// Calls visit(pipe, length_m) for the stretches of the way to a node, from there back to the source.
+template <class Visit>
+void WalkBack(const PathTree& paths, int node, Visit visit) {
+  while (node >= 0) {
+    const PathStep& step = paths.nodes[static_cast<std::size_t>(node)];
+    if (step.pipe >= 0) visit(step.pipe, step.length_m);
+    node = step.previous_node;
+  }
+}
+
+/// Loss of the plane wave on its way from a source to a place: the sum over the way's pipes of alpha(f) times
+/// length, in Np; infinity where no way leads. The pressure falls to exp(-loss), the power to exp(-2 loss).
+/// Only the way of least loss at kPathFrequency_Hz counts, whatever f. The wave passes from pipe to pipe as
+/// if their impedances matched and nothing branched off: transmission, reflections, sums over several ways
+/// and the near field within a diameter of the hole belong to a field of the whole network and are not in it.
+double CalcPathLoss_Np(const std::vector<AcousticPipe>& pipes, const PathTree& paths, const PipePlace& place,
+                       double f_Hz);
 
 }  // namespace piperun::acoustics

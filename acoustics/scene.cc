@@ -3,18 +3,20 @@
 #include <cmath>
 
 #include "acoustics/flow_noise.h"
-#include "acoustics/propagation.h"
+#include "base/check.h"
 
 namespace piperun::acoustics {
 
 double CalcLeakPsdAtHole(const AcousticScene& scene, const SoundingLeak& leak, double f_Hz) {
-  const PipeWave& wave = scene.legs[FindLeg(scene.legs, leak.chainage_m)].wave;
+  Demand(leak.pipe >= 0 && static_cast<std::size_t>(leak.pipe) < scene.pipes.size(), "a leak is in a pipe");
+  const PipeWave& wave = scene.pipes[static_cast<std::size_t>(leak.pipe)].wave;
   const double half_impedance = 0.5 * wave.impedance_Pa_s_m3;
   return half_impedance * half_impedance * leak.sound->VolumeVelocityPsd(f_Hz);
 }
 
-double CalcLeakPsd(const AcousticScene& scene, const SoundingLeak& leak, double chainage_m, double f_Hz) {
-  const double loss_Np = CalcPathLoss_Np(scene.legs, leak.chainage_m, chainage_m, f_Hz);
+double CalcLeakPsd(const AcousticScene& scene, const SoundingLeak& leak, const PathTree& paths,
+                   const PipePlace& place, double f_Hz) {
+  const double loss_Np = CalcPathLoss_Np(scene.pipes, paths, place, f_Hz);
   return CalcLeakPsdAtHole(scene, leak, f_Hz) * std::exp(-2 * loss_Np);
 }
 
@@ -22,7 +24,7 @@ double CalcBackgroundPsd(const AcousticScene& scene, const ListenerState& listen
                          double f_Hz) {
   const double distant = CalcDistantNoisePsd(scene.ambient, f_Hz);
   const double speed_m_s = CalcEddySpeed(listener.slip_speed_m_s, listener.water_speed_m_s);
-  if (!scene.ambient.flow_noise || speed_m_s <= 0) return distant;
+  if (!scene.ambient.flow_noise || listener.pipe < 0 || speed_m_s <= 0) return distant;
   const WallFlow flow = CalcWallFlow(speed_m_s, listener.bore_radius_m, scene.water);
   return distant + CalcWallPressurePsd(flow, f_Hz) * CalcFaceAveraging(flow, face_radius_m, f_Hz);
 }

@@ -76,12 +76,12 @@ TEST(WallPressure, AFaceAsLargeAsTheEddiesHearsAQuarterOfTheirPower) {
 TEST(WallPressure, IsNegligibleAbove500HertzForADriftingBallAndLoudForAHeldOne) {
   AcousticScene scene = MakeQuietScene(MakePvcWave());
   scene.ambient.flow_noise = true;
-  const ListenerState drifting{10, 0.5, 0.02, kPvcBore_m / 2};
+  const ListenerState drifting{0, 10, 0.5, 0.02, kPvcBore_m / 2};
   for (const double f_Hz : {500.0, 1000.0, 4000.0}) {
     EXPECT_LT(CalcBackgroundPsd(scene, drifting, 0.005, f_Hz), 0.01 * CalcSelfNoisePsd({}, f_Hz));
   }
   // held against 1 m/s it hears 114 dB at 100 Hz less 13 dB of averaging, the distant noise has 80 dB
-  const ListenerState held{10, 1, 1, kPvcBore_m / 2};
+  const ListenerState held{0, 10, 1, 1, kPvcBore_m / 2};
   EXPECT_GT(CalcBackgroundPsd(scene, held, 0.005, 100), 100 * CalcDistantNoisePsd(AmbientParams{}, 100));
 }
 
@@ -102,10 +102,10 @@ class ListenerSpectrumAt : public testing::TestWithParam<ListenerState> {};
 
 TEST_P(ListenerSpectrumAt, TabulatesThePureFunctions) {
   AcousticScene scene = MakeQuietScene(MakePvcWave());
-  scene.legs = {{0, 10, MakePvcWave()}, {10, 20, MakeIronWave()}, {30, 20, MakePvcWave()}};
+  scene.pipes = {{0, 1, 10, MakePvcWave()}, {1, 2, 20, MakeIronWave()}, {2, 3, 20, MakePvcWave()}};
   scene.ambient = {};
   AddLeak(scene, 8, MakeJet(1e-5, 1e-3));
-  AddLeak(scene, 13, MakeJet(5e-5, 3e-3));
+  AddLeak(scene, {1, 3}, MakeJet(5e-5, 3e-3));
   const HydrophoneParams params;
   const double width_Hz = 15.625;
   ListenerSpectrum spectrum(scene, params, width_Hz, 513);
@@ -115,27 +115,89 @@ TEST_P(ListenerSpectrumAt, TabulatesThePureFunctions) {
   for (std::size_t k = 1; k < psd.size(); ++k) {
     const double f_Hz = static_cast<double>(k) * width_Hz;
     double sound = CalcBackgroundPsd(scene, GetParam(), params.face_radius_m, f_Hz);
-    for (const SoundingLeak& leak : scene.leaks)
-      sound += CalcLeakPsd(scene, leak, GetParam().chainage_m, f_Hz);
+    for (const std::size_t leak : {0u, 1u}) sound += CalcLeakPsdAt(scene, leak, GetParam().place(), f_Hz);
     const double expected = sound * f_Hz * f_Hz / (f_Hz * f_Hz + 100) + CalcSelfNoisePsd(params, f_Hz);
     EXPECT_NEAR(10 * std::log10(psd[k] / expected), 0, 0.03) << f_Hz << " Hz";
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Listeners, ListenerSpectrumAt,
-                         testing::Values(ListenerState{7.9, 0.5, 0.03, 0.075}, ListenerState{8, 0, 0, 0.075},
-                                         ListenerState{12.5, 1.7, 1.7, 0.06},
-                                         ListenerState{31, 0.3, 0.001, 0.075},
-                                         ListenerState{-2, 0.3, 0.31, 0.075}));
+INSTANTIATE_TEST_SUITE_P(
+    Listeners, ListenerSpectrumAt,
+    testing::Values(ListenerState{0, 7.9, 0.5, 0.03, 0.075}, ListenerState{0, 8, 0, 0, 0.075},
+                    ListenerState{1, 2.5, 1.7, 1.7, 0.06}, ListenerState{2, 1, 0.3, 0.001, 0.075},
+                    ListenerState{0, -2, 0.3, 0.31, 0.075}, ListenerState{-1, 0, 0.3, 0.31, 0}));
+
+/// A tee: mains of PVC and iron, a branch of thinner PVC with its own leak, and a detached pipe.
+AcousticScene MakeTeeScene() {
+  AcousticScene scene = MakeQuietScene(MakePvcWave());
+  const PipeWave branch = CalcPipeWave(0.1, 0.005, MakeWall(3.5e9, 0.05), MakeWater10C());
+  scene.pipes = {
+      {0, 1, 10, MakePvcWave()}, {1, 2, 20, MakeIronWave()}, {3, 1, 15, branch}, {4, 5, 30, MakePvcWave()}};
+  scene.ambient = {};
+  AddLeak(scene, {0, 8}, MakeJet(1e-5, 1e-3));
+  AddLeak(scene, {2, 12}, MakeJet(2e-5, 1e-3));
+  return scene;
+}
+
+std::vector<float> CalcSpectrumAt(ListenerSpectrum& spectrum, const PipePlace& place) {
+  std::vector<float> psd(513);
+  spectrum.Calc({place.pipe, place.s_m, 0.4, 0.05, 0.075}, psd);
+  return psd;
+}
+
+TEST(ListenerSpectrum, AroundATeeIsThatOfThePureFunctions) {
+  const AcousticScene scene = MakeTeeScene();
+  ListenerSpectrum spectrum(scene, {}, 15.625, 513);
+  for (const PipePlace& place : {PipePlace{0, 9.5}, {1, 0.5}, {2, 14.5}, {2, 3}, {1, 19}, {0, 1}}) {
+    const auto psd = CalcSpectrumAt(spectrum, place);
+    for (std::size_t k = 1; k < psd.size(); ++k) {
+      const double f_Hz = 15.625 * static_cast<double>(k);
+      const ListenerState listener{place.pipe, place.s_m, 0.4, 0.05, 0.075};
+      const double sound = CalcLeakPsdAt(scene, 0, place, f_Hz) + CalcLeakPsdAt(scene, 1, place, f_Hz) +
+                           CalcBackgroundPsd(scene, listener, 0.005, f_Hz);
+      const double expected = sound * f_Hz * f_Hz / (f_Hz * f_Hz + 100) + CalcSelfNoisePsd({}, f_Hz);
+      EXPECT_NEAR(10 * std::log10(psd[k] / expected), 0, 0.03) << place.pipe << ", " << f_Hz << " Hz";
+    }
+  }
+}
+
+TEST(ListenerSpectrum, DoesNotRememberThePipesItCameThrough) {
+  const AcousticScene scene = MakeTeeScene();
+  ListenerSpectrum used(scene, {}, 15.625, 513);
+  for (const PipePlace& place : {PipePlace{0, 9}, {2, 14}, {-1, 0}, {3, 10}, {1, 2}, {2, 14}, {0, 9}}) {
+    ListenerSpectrum fresh(scene, {}, 15.625, 513);
+    EXPECT_EQ(CalcSpectrumAt(used, place), CalcSpectrumAt(fresh, place)) << place.pipe;
+  }
+}
+
+TEST(ListenerSpectrum, IsTheSameFromAllPipesOfANode) {
+  ListenerSpectrum spectrum(MakeTeeScene(), {}, 15.625, 513);
+  const auto main = CalcSpectrumAt(spectrum, {0, 10});
+  const auto onward = CalcSpectrumAt(spectrum, {1, 0}), branch = CalcSpectrumAt(spectrum, {2, 15});
+  for (std::size_t k = 1; k < main.size(); ++k) {
+    // single precision: a loss of up to 46 Np is rounded by 2^-19 Np
+    EXPECT_NEAR(onward[k] / main[k], 1, 1e-5) << k;
+    EXPECT_NEAR(branch[k] / main[k], 1, 1e-5) << k;
+  }
+}
+
+TEST(ListenerSpectrum, InNoPipeAndInADetachedOneHoldsNoLeak) {
+  AcousticScene without = MakeTeeScene();
+  without.leaks.clear();
+  ListenerSpectrum spectrum(MakeTeeScene(), {}, 15.625, 513), quiet(without, {}, 15.625, 513);
+  EXPECT_EQ(CalcSpectrumAt(spectrum, {-1, 0}), CalcSpectrumAt(quiet, {-1, 0}));
+  EXPECT_EQ(CalcSpectrumAt(spectrum, {3, 10}), CalcSpectrumAt(quiet, {3, 10}));
+  EXPECT_NE(CalcSpectrumAt(spectrum, {1, 10}), CalcSpectrumAt(quiet, {1, 10}));
+}
 
 TEST(ListenerSpectrum, DoesNotRememberWhatItWasAskedBefore) {
   AcousticScene scene = MakeQuietScene(MakePvcWave());
   scene.ambient = {};
   ListenerSpectrum used(scene, {}, 15.625, 513), fresh(scene, {}, 15.625, 513);
   std::vector<float> a(513), b(513);
-  for (int i = 0; i < 500; ++i) used.Calc({0, 0.01 * i, 0.004 * i, 0.05 + 1e-4 * (i % 3)}, a);
-  used.Calc({0, 0.4, 0.05, 0.075}, a);
-  fresh.Calc({0, 0.4, 0.05, 0.075}, b);
+  for (int i = 0; i < 500; ++i) used.Calc({0, 0, 0.01 * i, 0.004 * i, 0.05 + 1e-4 * (i % 3)}, a);
+  used.Calc({0, 0, 0.4, 0.05, 0.075}, a);
+  fresh.Calc({0, 0, 0.4, 0.05, 0.075}, b);
   EXPECT_EQ(a, b);
 }
 

@@ -27,11 +27,17 @@ namespace {
 TEST(Hydrophone, RenderingDoesNotAllocate) {
   AcousticScene scene = MakeQuietScene(MakePvcWave());
   scene.ambient = {};
-  AddLeak(scene, 10, MakeJet(1e-5, 1e-3));
+  scene.pipes = {{0, 1, 2, MakePvcWave()}, {1, 2, 3, MakeIronWave()}, {2, 3, 400, MakePvcWave()}};
+  AddLeak(scene, {2, 5}, MakeJet(1e-5, 1e-3));
   Hydrophone hydrophone({}, scene, RandomStream(1, "hydrophone0", 0));
-  // slip speeds over two decades, so that flow noise is tabulated anew again and again
+  // from pipe to pipe, with slip speeds over two decades, so that flow noise is tabulated anew again and
+  // again
   const Hydrophone::ListenerAt listener = [](TrueTime t) {
-    return ListenerState{Seconds(t), 0.5, 0.005 * std::exp(4.6 * std::abs(std::sin(Seconds(t)))),
+    const double s_m = Seconds(t);
+    const PipePlace place = s_m < 2   ? PipePlace{0, s_m}
+                            : s_m < 5 ? PipePlace{1, s_m - 2}
+                                      : PipePlace{2, s_m - 5};
+    return ListenerState{place.pipe, place.s_m, 0.5, 0.005 * std::exp(4.6 * std::abs(std::sin(Seconds(t)))),
                          kPvcBore_m / 2};
   };
   std::vector<std::int32_t> block(1600);

@@ -29,7 +29,7 @@ AcousticScene MakeBusyScene() {
   return scene;
 }
 
-ListenerState WalkPast(TrueTime t) { return {3 + 0.7 * Seconds(t), 0.8, 0.1, kPvcBore_m / 2}; }
+ListenerState WalkPast(TrueTime t) { return {0, 3 + 0.7 * Seconds(t), 0.8, 0.1, kPvcBore_m / 2}; }
 
 std::vector<std::int32_t> RenderInBlocks(std::size_t total, std::size_t block, const RandomStream& random) {
   Hydrophone hydrophone({}, MakeBusyScene(), random);
@@ -83,7 +83,7 @@ TEST(Hydrophone, HearsAStillLeakAtItsExactLevel) {
   AcousticScene scene = MakeQuietScene(MakePvcWave());
   AddLeak(scene, 10, MakeJet(1e-3 / 60, 1.2e-3));
   const auto pressure = RenderPressure(scene, MakeNoiselessHydrophone(), kRandom, StillAt(12), 200);
-  const auto psd = [&](double f_Hz) { return CalcLeakPsd(scene, scene.leaks[0], 12, f_Hz); };
+  const auto psd = [&](double f_Hz) { return CalcLeakPsdAt(scene, 0, {0, 12}, f_Hz); };
   // bins 1 to 511, each 15.625 Hz wide
   const double expected = IntegrateLog(psd, 0.5 * 15.625, 511.5 * 15.625);
   // some 600 Hz of noise in 200 s: 4.34 dB / sqrt(1.2e5) = 0.013 dB
@@ -115,7 +115,7 @@ TEST(Hydrophone, ThirdOctavesFollowTheModel) {
     double sum = 0, expected = 0;
     for (std::size_t k = low; k < high; ++k) {
       const double f_Hz = static_cast<double>(k) * width_Hz;
-      const double sound = CalcLeakPsd(scene, scene.leaks[0], 11, f_Hz) +
+      const double sound = CalcLeakPsdAt(scene, 0, {0, 11}, f_Hz) +
                            CalcBackgroundPsd(scene, listener, params.face_radius_m, f_Hz);
       sum += measured[k];
       expected += sound * f_Hz * f_Hz / (f_Hz * f_Hz + 1e4) + CalcPressureSquared(42);
@@ -129,9 +129,9 @@ TEST(Hydrophone, ThirdOctavesFollowTheModel) {
 TEST(Hydrophone, LevelFallsWithDistanceAsTheAttenuationSays) {
   AcousticScene scene = MakeQuietScene(MakePvcWave());
   AddLeak(scene, 10, std::make_shared<FlatSound>(1e-14, 980, 1020));
-  const auto level_dB = [&](double chainage_m) {
+  const auto level_dB = [&](double s_m) {
     return CalcLevel_dB(
-        MeanSquare(RenderPressure(scene, MakeNoiselessHydrophone(), kRandom, StillAt(chainage_m), 100)));
+        MeanSquare(RenderPressure(scene, MakeNoiselessHydrophone(), kRandom, StillAt(s_m), 100)));
   };
   // 3.21 dB/m at 1 kHz in the published table; the same seed at all places: only the level differs
   const double at_hole_dB = level_dB(10);
@@ -149,7 +149,7 @@ Profile MeasurePassage(std::uint64_t seed, double hole_m, double speed_m_s) {
   AcousticScene scene = MakeQuietScene(MakePvcWave());
   AddLeak(scene, hole_m, std::make_shared<FlatSound>(1e-13, 2900, 3100));
   const auto listener = [&](TrueTime t) {
-    return ListenerState{7 + speed_m_s * Seconds(t), speed_m_s, 0, kPvcBore_m / 2};
+    return ListenerState{0, 7 + speed_m_s * Seconds(t), speed_m_s, 0, kPvcBore_m / 2};
   };
   const auto pressure = RenderPressure(scene, MakeNoiselessHydrophone(), RandomStream(seed, "hydrophone0", 0),
                                        listener, 6 / speed_m_s);
@@ -251,13 +251,46 @@ TEST(Hydrophone, AListenerThatIsNotFiniteHearsNothing) {
   std::vector<std::int32_t> counts(5120);
   hydrophone.Render(
       [](TrueTime t) {
-        return t < SampleTime(2048, Rate(16000)) ? WalkPast(t) : ListenerState{NAN, 1, 0, 0.07};
+        return t < SampleTime(2048, Rate(16000)) ? WalkPast(t) : ListenerState{0, NAN, 1, 0, 0.07};
       },
       counts);
   const auto loud =
       std::count_if(counts.begin(), counts.begin() + 2048, [](std::int32_t c) { return c != 0; });
   EXPECT_GT(loud, 2000);
   EXPECT_TRUE(std::all_of(counts.begin() + 2048, counts.end(), [](std::int32_t c) { return c == 0; }));
+}
+
+TEST(Hydrophone, APipeCutInTwoSoundsAsTheWholeOne) {
+  AcousticScene whole = MakeQuietScene(MakePvcWave());
+  AddLeak(whole, 60, MakeJet(2e-5, 1.2e-3));
+  AcousticScene cut = MakeQuietScene(MakePvcWave());
+  cut.pipes = {{0, 1, 64, MakePvcWave()}, {2, 1, 336, MakePvcWave()}};
+  AddLeak(cut, {0, 60}, MakeJet(2e-5, 1.2e-3));
+  const auto s_m = [](TrueTime t) { return 62.5 + 1.5 * Seconds(t); };
+  const auto in_whole = [&](TrueTime t) { return ListenerState{0, s_m(t), 0.5, 0.05, 0.07}; };
+  const auto in_cut = [&](TrueTime t) {
+    const ListenerState before{0, s_m(t), 0.5, 0.05, 0.07}, beyond{1, 400 - s_m(t), 0.5, 0.05, 0.07};
+    return s_m(t) < 64 ? before : beyond;
+  };
+  // lengths are sums of powers of two and round to the same single precision number either way
+  EXPECT_EQ(RenderPressure(cut, {}, kRandom, in_cut, 4), RenderPressure(whole, {}, kRandom, in_whole, 4));
+}
+
+TEST(Hydrophone, ALeakTooFarToBeHeardChangesNoBit) {
+  AcousticScene near = MakeQuietScene(MakePvcWave());
+  near.ambient = {};
+  near.pipes.push_back({1, 2, 1e4, MakePvcWave()});  // 0.05 dB/m in the lowest bin
+  near.pipes.push_back({3, 4, 10, MakePvcWave()});
+  AddLeak(near, {0, 4}, MakeJet(2e-5, 1.2e-3));
+  AcousticScene far = near;
+  AddLeak(far, {1, 9e3}, MakeJet(2e-5, 1.2e-3));
+  AddLeak(far, {2, 5}, MakeJet(2e-5, 1.2e-3));
+  std::swap(far.leaks.front(), far.leaks.back());
+  AcousticScene audible = near;
+  AddLeak(audible, {0, 6}, MakeJet(2e-5, 1.2e-3));
+  const auto base = RenderPressure(near, {}, kRandom, WalkPast, 2);
+  EXPECT_EQ(RenderPressure(far, {}, kRandom, WalkPast, 2), base);
+  EXPECT_NE(RenderPressure(audible, {}, kRandom, WalkPast, 2), base);
 }
 
 TEST(Hydrophone, LevelDoesNotDependOnTheRate) {
@@ -292,7 +325,7 @@ TEST(LeakSnr, IsTheRatioOfFlatSpectra) {
   HydrophoneParams params = MakeNoiselessHydrophone();
   const double half_impedance = MakePvcWave().impedance_Pa_s_m3 / 2;
   const double leak_dB = CalcLevel_dB(half_impedance * half_impedance * 1e-20);
-  const ListenerState at_hole{10, 0, 0, kPvcBore_m / 2};
+  const ListenerState at_hole{0, 10, 0, 0, kPvcBore_m / 2};
   EXPECT_NEAR(CalcLeakSnr_dB(scene, 0, params, at_hole, 1000, 4000), leak_dB - 60, 0.01);
   params.self_noise_dB_re_1uPa2_Hz = 60;  // twice the noise
   EXPECT_NEAR(CalcLeakSnr_dB(scene, 0, params, at_hole, 1000, 4000), leak_dB - 63.01, 0.01);
@@ -321,7 +354,7 @@ TEST(LeakSnr, EqualsTheIntegralsOfTheFormulas) {
   scene.ambient = {};
   scene.ambient.flow_noise = false;
   AddLeak(scene, 10, MakeJet(Q, d, drop));
-  EXPECT_NEAR(CalcLeakSnr_dB(scene, 0, {}, {15, 0, 0, a_i}, 1000, 4000),
+  EXPECT_NEAR(CalcLeakSnr_dB(scene, 0, {}, {0, 15, 0, 0, a_i}, 1000, 4000),
               10 * std::log10(IntegrateLog(leak, 1000, 4000) / IntegrateLog(noise, 1000, 4000)), 1e-3);
 }
 
@@ -338,7 +371,7 @@ TEST(LeakSnr, FollowsTheTableOfSnrAgainstDistance) {
     AcousticScene scene = MakeQuietScene(row.wave);
     scene.ambient = {};
     AddLeak(scene, 200, MakeJet(1e-3 / 60, 1.2e-3));
-    const ListenerState listener{200 + row.distance_m, 0.5, 0.05, row.wave.bore_radius_m};
+    const ListenerState listener{0, 200 + row.distance_m, 0.5, 0.05, row.wave.bore_radius_m};
     EXPECT_NEAR(CalcLeakSnr_dB(scene, 0, {}, listener, 1000, 4000), row.snr_dB, 0.9)
         << row.distance_m << " m";
   }
@@ -347,16 +380,27 @@ TEST(LeakSnr, FollowsTheTableOfSnrAgainstDistance) {
 TEST(LeakSnr, OfASilentLeakIsMinusInfinity) {
   AcousticScene scene = MakeQuietScene(MakePvcWave());
   AddLeak(scene, 10, MakeJet(0, 1e-3));
-  EXPECT_EQ(CalcLeakSnr_dB(scene, 0, {}, {10, 0, 0, 0.07}, 1000, 4000),
+  EXPECT_EQ(CalcLeakSnr_dB(scene, 0, {}, {0, 10, 0, 0, 0.07}, 1000, 4000),
             -std::numeric_limits<double>::infinity());
+}
+
+TEST(LeakSnr, WhereNoPipeLeadsIsMinusInfinity) {
+  AcousticScene scene = MakeQuietScene(MakePvcWave());
+  scene.pipes.push_back({2, 3, 10, MakePvcWave()});
+  AddLeak(scene, 10, MakeJet(1e-5, 1e-3));
+  for (const int pipe : {-1, 1}) {
+    EXPECT_EQ(CalcLeakSnr_dB(scene, 0, {}, {pipe, 5, 0, 0, 0.07}, 1000, 4000),
+              -std::numeric_limits<double>::infinity());
+  }
 }
 
 TEST(LeakSnr, RefusesABandThatIsNone) {
   AcousticScene scene = MakeQuietScene(MakePvcWave());
   AddLeak(scene, 10, MakeJet(1e-5, 1e-3));
-  EXPECT_THROW(CalcLeakSnr_dB(scene, 0, {}, {}, 1000, 9000), InputError);
-  EXPECT_THROW(CalcLeakSnr_dB(scene, 0, {}, {}, 0, 4000), InputError);
-  EXPECT_THROW(CalcLeakSnr_dB(scene, 0, {}, {}, 4000, 1000), InputError);
+  const ListenerState listener{0, 10, 0, 0, 0.07};
+  EXPECT_THROW(CalcLeakSnr_dB(scene, 0, {}, listener, 1000, 9000), InputError);
+  EXPECT_THROW(CalcLeakSnr_dB(scene, 0, {}, listener, 0, 4000), InputError);
+  EXPECT_THROW(CalcLeakSnr_dB(scene, 0, {}, listener, 4000, 1000), InputError);
 }
 
 }  // namespace

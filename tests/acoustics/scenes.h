@@ -39,18 +39,32 @@ class FlatSound : public LeakSound {
   double psd_, low_Hz_, high_Hz_;
 };
 
-/// One pipe without any background.
+inline constexpr double kPipe_m = 400;
+
+/// One pipe of 400 m without any background.
 inline AcousticScene MakeQuietScene(const PipeWave& wave) {
   AcousticScene scene;
-  scene.legs = {{0, 100, wave}};
+  scene.pipes = {{0, 1, kPipe_m, wave}};
   scene.water = MakeWater10C();
   scene.ambient = {
       .distant_level_dB_re_1uPa2_Hz = -200, .distant_slope_dB_per_decade = 0, .flow_noise = false};
   return scene;
 }
 
-inline void AddLeak(AcousticScene& scene, double chainage_m, std::shared_ptr<const LeakSound> sound) {
-  scene.leaks.push_back({"L" + std::to_string(scene.leaks.size() + 1), chainage_m, std::move(sound)});
+inline void AddLeak(AcousticScene& scene, const PipePlace& place, std::shared_ptr<const LeakSound> sound) {
+  const std::string id = "L" + std::to_string(scene.leaks.size() + 1);
+  scene.leaks.push_back({id, place.pipe, place.s_m, std::move(sound)});
+}
+
+/// A leak in the only pipe.
+inline void AddLeak(AcousticScene& scene, double s_m, std::shared_ptr<const LeakSound> sound) {
+  AddLeak(scene, PipePlace{0, s_m}, std::move(sound));
+}
+
+/// The spectrum of leak `i` at a place.
+inline double CalcLeakPsdAt(const AcousticScene& scene, std::size_t i, const PipePlace& place, double f_Hz) {
+  const SoundingLeak& leak = scene.leaks[i];
+  return CalcLeakPsd(scene, leak, FindPaths(scene.pipes, leak.place()), place, f_Hz);
 }
 
 /// The turbulent jet with its default parameters.
@@ -84,8 +98,8 @@ inline std::vector<double> RenderPressure(const AcousticScene& scene, const Hydr
   return pressure_Pa;
 }
 
-inline Hydrophone::ListenerAt StillAt(double chainage_m) {
-  return [=](TrueTime) { return ListenerState{chainage_m, 0.5, 0.05, kPvcBore_m / 2}; };
+inline Hydrophone::ListenerAt StillAt(double s_m) {
+  return [=](TrueTime) { return ListenerState{0, s_m, 0.5, 0.05, kPvcBore_m / 2}; };
 }
 
 }  // namespace piperun::acoustics
