@@ -102,11 +102,10 @@ void BuildScene(const Scenario& scenario, Assembly& assembly) {
   acoustics::AcousticScene& scene = assembly.scene;
   scene.ambient = scenario.ambient;
   scene.water = assembly.water;
-  if (!assembly.route) return;
-  for (const RoutePiece& piece : assembly.route->pieces()) {
-    const Pipe& pipe = assembly.network->pipe(piece.pipe);
-    scene.legs.push_back(
-        {piece.line.s_begin_m, piece.line.length_m,
+  if (!assembly.network) return;
+  for (const Pipe& pipe : assembly.network->pipes()) {
+    scene.pipes.push_back(
+        {pipe.from, pipe.to, pipe.length_m,
          acoustics::CalcPipeWave(pipe.diameter_m, pipe.wall_thickness_m, pipe.material, assembly.water)});
   }
   for (std::size_t i = 0; i < assembly.leaks.size(); ++i) {
@@ -114,7 +113,7 @@ void BuildScene(const Scenario& scenario, Assembly& assembly) {
     const KindEntry& sound = scenario.leaks[i].sound;
     const auto& kind = FindKind(acoustics::LeakSoundKinds(), sound.kind());
     scene.leaks.push_back(
-        {placed.leak.id, placed.chainage_m,
+        {placed.leak.id, placed.leak.pipe, placed.leak.s_m,
          kind.make(sound.params(), placed.leak.hole_diameter_m, placed.state, assembly.water.density_kg_m3)});
   }
 }
@@ -145,9 +144,9 @@ std::unique_ptr<Channel> MakeChannel(int index, const SensorEntry& entry, const 
   const RandomStream random(static_cast<std::uint64_t>(scenario.seed), entry.name,
                             static_cast<std::uint64_t>(scenario.run));
   if (const auto* hydrophone = dynamic_cast<const acoustics::HydrophoneParams*>(&entry.kind.params())) {
-    if (!assembly.route) throw InputError("a hydrophone needs a pipe, and this scenario has no network");
+    if (!assembly.network) throw InputError("a hydrophone needs a pipe, and this scenario has no network");
     return std::make_unique<HydrophoneChannel>(index, *hydrophone, assembly.scene, random, assembly.clock,
-                                               RouteOf(assembly));
+                                               *assembly.network);
   }
   const Rate truth_rate = assembly.motion->rate();
   const sim::SensorContext context{random, assembly.clock, {0, 0, -scenario.gravity_m_s2}, truth_rate};

@@ -31,7 +31,7 @@ std::optional<double> CalcSnr_dB(const Assembly& assembly, std::size_t leak,
                                  const acoustics::HydrophoneParams* hydrophone, const sim::TruthState& ball) {
   constexpr double kLow_Hz = 1000, kHigh_Hz = 4000;
   if (!hydrophone || hydrophone->rate_Hz <= 2 * kLow_Hz) return std::nullopt;
-  return acoustics::CalcLeakSnr_dB(assembly.scene, leak, *hydrophone, CalcListener(ball, &*assembly.route),
+  return acoustics::CalcLeakSnr_dB(assembly.scene, leak, *hydrophone, CalcListener(ball, *assembly.network),
                                    kLow_Hz, std::min(kHigh_Hz, hydrophone->rate_Hz / 2));
 }
 

@@ -27,8 +27,9 @@ struct TruthState {
 
   int pipe = -1;  ///< -1: not in a pipe
   double s_m = 0;
+  bool reversed = false;  ///< the way taken runs against the pipe: chainage grows where s falls
   double chainage_m = 0;
-  double water_speed_m_s = 0;  ///< bulk velocity Q/A along the route, where the ball is
+  double water_speed_m_s = 0;  ///< bulk velocity Q/A where the ball is, positive along the way taken
   double pressure_Pa = 0;      ///< gauge, static, at the ball's centre
   bool contact = false;        ///< touching the wall
 };

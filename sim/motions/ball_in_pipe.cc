@@ -109,6 +109,7 @@ class BallInPipe : public Motion {
     state_.dtheta_B_rad = ball.dtheta_B_rad;
     const RoutePiece& piece = context_.route->pieces()[ball.spot.piece];
     state_.pipe = piece.pipe;
+    state_.reversed = piece.reversed;
     state_.s_m = piece.PipeS_m(ball.spot.chainage_m);
     state_.chainage_m = ball.spot.chainage_m;
     state_.water_speed_m_s = water_.bulk_speed_m_s;
