@@ -16,7 +16,7 @@ struct AmbientParams {
 };
 
 /// S(f) = 10^((L + m log10(f / 100 Hz)) / 10) uPa^2/Hz, L the level at 100 Hz, m the slope; one-sided, in
-/// Pa^2/Hz, the same everywhere along the route. Range f > 0.
+/// Pa^2/Hz, the same everywhere in the network. Range f > 0.
 double CalcDistantNoisePsd(const AmbientParams& ambient, double f_Hz);
 
 }  // namespace piperun::acoustics

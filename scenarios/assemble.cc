@@ -39,7 +39,21 @@ void BuildScene(const Scenario& scenario, Assembly& assembly) {
   scene.ambient = scenario.ambient;
   scene.water = assembly.water;
   if (!assembly.pipeline) return;
-  @ @ @
+  const Pipeline& pipeline = *assembly.pipeline;
+  for (const Pipe& pipe : pipeline.network.pipes()) {
+    scene.pipes.push_back(
+        {pipe.from, pipe.to, pipe.length_m,
+         acoustics::CalcPipeWave(pipe.diameter_m, pipe.wall_thickness_m, pipe.material, assembly.water)});
+  }
+  const KindEntry drawn_sound = LeakEntry{}.sound;
+  for (std::size_t i = 0; i < pipeline.leaks.size(); ++i) {
+    const Leak& leak = pipeline.leaks[i];
+    const KindEntry& sound = i < scenario.leaks.size() ? scenario.leaks[i].sound : drawn_sound;
+    const auto& kind = FindKind(acoustics::LeakSoundKinds(), sound.kind());
+    scene.leaks.push_back({leak.id, leak.pipe, leak.s_m,
+                           kind.make(sound.params(), leak.hole_diameter_m, pipeline.leak_states[i],
+                                     assembly.water.density_kg_m3)});
+  }
 }
 
 void BuildMotion(const Scenario& scenario, Assembly& assembly) {
@@ -78,7 +92,7 @@ std::unique_ptr<Channel> MakeChannel(int index, const SensorEntry& entry, const 
       throw InputError("a hydrophone needs a pipe, and this scenario has no network");
     }
     return std::make_unique<HydrophoneChannel>(index, *hydrophone, assembly.scene, random, assembly.clock,
-                                               assembly.network());
+                                               *assembly.network());
   }
   const Rate truth_rate = assembly.motion->rate();
   const sim::SensorContext context{random, assembly.clock, {0, 0, -scenario.gravity_m_s2}, truth_rate};

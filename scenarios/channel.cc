@@ -16,10 +16,10 @@ const Measurement& SensorChannel::Take(const sim::TruthWindow& window) {
 
 HydrophoneChannel::HydrophoneChannel(int index, const acoustics::HydrophoneParams& params,
                                      acoustics::AcousticScene scene, const RandomStream& random,
-                                     const ClockModel& clock, const Route* route)
+                                     const ClockModel& clock, const Network& network)
     : hydrophone_(params, std::move(scene), random),
       clock_(clock),
-      route_(route),
+      network_(network),
       counts_(static_cast<std::size_t>(params.block_samples)) {
   measurement_.channel = index;
   measurement_.value = AudioBlock{{}, params.rate_Hz, params.scale_Pa(), counts_};
@@ -44,7 +44,7 @@ const Measurement& HydrophoneChannel::Take(const sim::TruthWindow& window) {
   const RobotTime start = StampOf(0);
   const auto listener = [&](TrueTime recorder_time) {
     const TrueTime t = clock_.ToTrue(start + recorder_time.time_since_epoch());
-    return CalcListener(sim::Interpolate(window, std::max(t, TrueTime{})), route_);
+    return CalcListener(sim::Interpolate(window, std::max(t, TrueTime{})), network_);
   };
   hydrophone_.Render(listener, counts_);
   next_sample_ += static_cast<std::int64_t>(counts_.size());
@@ -52,14 +52,16 @@ const Measurement& HydrophoneChannel::Take(const sim::TruthWindow& window) {
   return measurement_;
 }
 
-acoustics::ListenerState CalcListener(const sim::TruthState& truth, const Route* route) {
+acoustics::ListenerState CalcListener(const sim::TruthState& truth, const Network& network) {
   acoustics::ListenerState listener;
-  listener.chainage_m = truth.chainage_m;
+  listener.pipe = truth.pipe;
+  listener.s_m = truth.s_m;
   listener.water_speed_m_s = truth.water_speed_m_s;
-  if (!route) return listener;
-  const std::size_t piece = route->FindPiece(truth.chainage_m);
-  listener.bore_radius_m = route->pieces()[piece].radius_m;
-  const double ball_speed = truth.v_WB_W.dot(route->Eval(truth.chainage_m, piece).tangent_W);
+  if (truth.pipe < 0) return listener;
+  const Pipe& pipe = network.pipe(truth.pipe);
+  listener.bore_radius_m = pipe.RadiusAt_m(truth.s_m);
+  const double speed_along_pipe = truth.v_WB_W.dot(pipe.Eval(truth.s_m).tangent_W);
+  const double ball_speed = truth.reversed ? -speed_along_pipe : speed_along_pipe;
   listener.slip_speed_m_s = std::abs(truth.water_speed_m_s - ball_speed);
   return listener;
 }

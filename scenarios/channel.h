@@ -6,7 +6,7 @@
 
 #include "acoustics/hydrophone.h"
 #include "base/measurement.h"
-#include "base/route.h"
+#include "base/network.h"
 #include "sim/sensor.h"
 #include "sim/truth.h"
 
@@ -43,11 +43,11 @@ class SensorChannel : public Channel {
 };
 
 /// A channel over the hydrophone. Its converter runs on the robot's clock: sample n is taken when that clock
-/// shows n / rate after the start.
+/// shows n / rate after the start. Keeps a reference to the network.
 class HydrophoneChannel : public Channel {
  public:
   HydrophoneChannel(int index, const acoustics::HydrophoneParams& params, acoustics::AcousticScene scene,
-                    const RandomStream& random, const ClockModel& clock, const Route* route);
+                    const RandomStream& random, const ClockModel& clock, const Network& network);
   TrueTime due() const override;
   Duration lookahead() const override;
   Duration history() const override;
@@ -59,13 +59,14 @@ class HydrophoneChannel : public Channel {
 
   acoustics::Hydrophone hydrophone_;
   ClockModel clock_;
-  const Route* route_;
+  const Network& network_;
   std::int64_t next_sample_ = 0;
   std::vector<std::int32_t> counts_;
   Measurement measurement_;
 };
 
-/// What a hydrophone in the ball knows of its surroundings.
-acoustics::ListenerState CalcListener(const sim::TruthState& truth, const Route* route);
+/// What a hydrophone in the ball knows of its surroundings: the bore at its place, and its slip |u - v . t|
+/// with t the pipe's tangent along the way taken.
+acoustics::ListenerState CalcListener(const sim::TruthState& truth, const Network& network);
 
 }  // namespace piperun::scenarios

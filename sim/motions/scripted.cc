@@ -138,6 +138,7 @@ class ScriptedMotion final : public Motion {
     state_.chainage_m = std::clamp(spot.chainage_m, 0.0, context_.route->length_m());
     const RoutePiece& piece = context_.route->pieces()[piece_];
     state_.pipe = piece.pipe;
+    state_.reversed = piece.reversed;
     state_.s_m = piece.PipeS_m(state_.chainage_m);
     if (context_.flow) SetWater(piece);
   }

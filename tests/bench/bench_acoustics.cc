@@ -7,34 +7,76 @@
 namespace piperun::acoustics {
 namespace {
 
-/// 100 m of PVC-U DN150 with three leaks.
-AcousticScene MakeScene(const WaterProperties& water) {
-  const WallMaterial pvc{.name = "pvc_u",
-                         .young_modulus_Pa = 3.5e9,
-                         .loss_factor = 0.05,
-                         .poisson_ratio = 0.38,
-                         .density_kg_m3 = 1420,
-                         .roughness_m = 1.5e-6};
-  AcousticScene scene;
-  scene.water = water;
-  scene.legs = {{0, 100, CalcPipeWave(0.1475, 0.0075, pvc, water)}};
+const WaterProperties kWater = CalcWater(10);
+
+const WallMaterial kPvc{.name = "pvc_u",
+                        .young_modulus_Pa = 3.5e9,
+                        .loss_factor = 0.05,
+                        .poisson_ratio = 0.38,
+                        .density_kg_m3 = 1420,
+                        .roughness_m = 1.5e-6};
+const WallMaterial kIron{.name = "ductile_iron",
+                         .young_modulus_Pa = 165e9,
+                         .loss_factor = 0.02,
+                         .poisson_ratio = 0.28,
+                         .density_kg_m3 = 7100,
+                         .roughness_m = 1e-4};
+
+void AddLeak(AcousticScene& scene, int pipe, double s_m) {
   const LeakSoundKind& kind = LeakSoundKinds().front();
-  for (const double chainage_m : {5.0, 8.0, 12.0}) {
-    scene.leaks.push_back({"L", chainage_m,
-                           kind.make(*kind.make_params(), 2e-3,
-                                     {.flow_m3_s = 4.6e-5, .pressure_drop_Pa = 3e5}, water.density_kg_m3)});
-  }
+  scene.leaks.push_back({"L", pipe, s_m,
+                         kind.make(*kind.make_params(), 2e-3, {.flow_m3_s = 4.6e-5, .pressure_drop_Pa = 3e5},
+                                   kWater.density_kg_m3)});
+}
+
+/// 100 m of PVC-U DN150 with three leaks.
+AcousticScene MakeMain() {
+  AcousticScene scene;
+  scene.water = kWater;
+  scene.pipes = {{0, 1, 100, CalcPipeWave(0.1475, 0.0075, kPvc, kWater)}};
+  for (const double s_m : {5.0, 8.0, 12.0}) AddLeak(scene, 0, s_m);
   return scene;
 }
 
-/// One second of audio at 16 kHz among three leaks, in blocks of 0.1 s, with a slip speed that never rests.
-void RenderSecond(benchmark::State& state) {
-  const WaterProperties water = CalcWater(10);
-  Hydrophone hydrophone({}, MakeScene(water), RandomStream(1, "hydrophone0", 0));
-  const auto listener = [](TrueTime t) {
-    const double s = 0.4 * Seconds(t);
-    return ListenerState{s - 16 * std::floor(s / 16), 0.4, 0.02 + 0.01 * std::sin(7 * s), 0.07375};
+/// A town of 1,200 iron pipes of 16 m on a grid of 25 x 25 streets, in ten bores, with twenty leaks: sound
+/// crosses it all.
+AcousticScene MakeTown() {
+  constexpr int kStreets = 25;
+  AcousticScene scene;
+  scene.water = kWater;
+  const auto add_pipe = [&scene](int from, int to) {
+    const double bore_m = 0.08 + 0.02 * static_cast<double>(scene.pipes.size() * 7 % 10);
+    scene.pipes.push_back({from, to, 16, CalcPipeWave(bore_m, 0.006, kIron, kWater)});
   };
+  for (int row = 0; row < kStreets; ++row) {
+    for (int column = 0; column < kStreets; ++column) {
+      const int node = row * kStreets + column;
+      if (column + 1 < kStreets) add_pipe(node, node + 1);
+      if (row + 1 < kStreets) add_pipe(node, node + kStreets);
+    }
+  }
+  for (int i = 0; i < 20; ++i) AddLeak(scene, 60 * i, 5);
+  return scene;
+}
+
+/// Through pipes 0, 2, 4 .. of 16 m at 0.4 m/s, again and again, with a slip speed that never rests.
+class Walk {
+ public:
+  explicit Walk(int pipes) : pipes_(pipes) {}
+  ListenerState operator()(TrueTime t) const {
+    const double way_m = 0.4 * Seconds(t);
+    const int count = static_cast<int>(way_m / 16);
+    return {2 * (count % pipes_), way_m - 16 * count, 0.4, 0.02 + 0.01 * std::sin(7 * way_m), 0.07375};
+  }
+
+ private:
+  int pipes_;
+};
+
+/// One second of audio at 16 kHz in blocks of 0.1 s.
+void RenderSecond(benchmark::State& state, const AcousticScene& scene, const Walk& walk) {
+  Hydrophone hydrophone({}, scene, RandomStream(1, "hydrophone0", 0));
+  const Hydrophone::ListenerAt listener = walk;
   std::vector<std::int32_t> block(1600);
   for (auto _ : state) {
     for (int i = 0; i < 10; ++i) hydrophone.Render(listener, block);
@@ -42,7 +84,21 @@ void RenderSecond(benchmark::State& state) {
   }
   state.counters["x_real_time"] = benchmark::Counter(1, benchmark::Counter::kIsIterationInvariantRate);
 }
-BENCHMARK(RenderSecond)->Unit(benchmark::kMillisecond);
+
+void RenderSecondInMain(benchmark::State& state) { RenderSecond(state, MakeMain(), Walk(1)); }
+BENCHMARK(RenderSecondInMain)->Unit(benchmark::kMillisecond);
+
+void RenderSecondInTown(benchmark::State& state) { RenderSecond(state, MakeTown(), Walk(20)); }
+BENCHMARK(RenderSecondInTown)->Unit(benchmark::kMillisecond);
+
+/// Waves of all pipes, sounds and ways of all leaks, tables: what a run pays before it starts.
+void AssembleTown(benchmark::State& state) {
+  for (auto _ : state) {
+    Hydrophone hydrophone({}, MakeTown(), RandomStream(1, "hydrophone0", 0));
+    benchmark::DoNotOptimize(hydrophone.rate());
+  }
+}
+BENCHMARK(AssembleTown)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace piperun::acoustics
