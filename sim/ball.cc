@@ -19,6 +19,16 @@ void BallParams::Visit(ParamVisitor& v) {
       {"rolling_resistance",
        "c_rr: rolling is resisted by the torque c_rr r N; hard plastic 0.002-0.005, soft foam 0.01-0.05."},
       Range::Between(0, 0.5), rolling_resistance);
+  v.NumberOr(
+      {"contact_stiffness_N_m",
+       "Force over overlap of ball and wall: soft foam 2000-10000; rigid: walls stop the ball within one "
+       "step of the physics."},
+      Range::Between(100, 1e9), "rigid", contact_stiffness_N_m);
+  v.Number(
+      {"contact_damping_N_s_m",
+       "Force over the speed of the overlap, where the contact has a stiffness; 2 sqrt(k m) lets nothing "
+       "bounce."},
+      Range::Between(0, 1e5), contact_damping_N_s_m);
   v.Number({"added_mass_coefficient",
             "Water that moves with the ball, as a fraction of what it displaces: 0.5 far from walls, 0.62 "
             "along one."},

@@ -8,18 +8,17 @@ namespace piperun::sim {
 
 class BallWorld::Impl {
  public:
-  Impl(const Route& route, const TubeBall& ball, Rate rate, const BallStart& start, BallLoadFunction load)
-      : route_(route),
+  Impl(const Bore& bore, const TubeBall& ball, Rate rate, const BallStart& start, BallLoadFunction load)
+      : bore_(bore),
         ball_(ball),
         rate_(rate),
         dt_s_(rate.Period_s()),
         load_(std::move(load)),
-        world_(route, {ball.radius_m, ball.mass_kg, ball.inertia_kg_m2, ball.friction, ball.rolling_length_m},
-               start.X_WB.p, start.v_WB_W, start.w_WB_W) {
-    state_.X_WB = start.X_WB;
+        world_(bore, ball, start) {
+    state_.X_LB = start.X_LB;
     state_.v_step_W = start.v_WB_W;
     state_.dtheta_B_rad.setZero();
-    state_.spot = FindRouteSpot(route_, start.X_WB.p, 0);
+    state_.spot = start.spot;
     w_step_W_ = start.w_WB_W;
     StepAhead(start.v_WB_W, start.w_WB_W, 0.5 * dt_s_);
     // the half kick leads to t = dt/2: the start velocity is the one at the instant
@@ -30,35 +29,44 @@ class BallWorld::Impl {
   const BallState& state() const { return state_; }
 
   void Step() {
-    const Vector3d v_ahead = world_.v_W();
-    const Vector3d w_ahead = world_.w_W();
+    const Vector3d v_ahead = world_.v_L();
+    const Vector3d w_ahead = world_.w_L();
     const Vector3d v_now = v_ahead + 0.5 * dt_s_ * state_.a_WB_W;
     const Vector3d w_now = w_ahead + 0.5 * dt_s_ * state_.alpha_WB_W;
     state_.time = SampleTime(++step_, rate_);
-    state_.X_WB.p = world_.p_W();
+    Relocate();
     state_.v_step_W = v_ahead;
-    state_.dtheta_B_rad = state_.X_WB.q.conjugate() * w_ahead * dt_s_;
-    state_.X_WB.q = (state_.X_WB.q * ExpSO3(state_.dtheta_B_rad)).normalized();
-    state_.spot = FindRouteSpot(route_, state_.X_WB.p, state_.spot.piece);
+    state_.dtheta_B_rad = state_.X_LB.q.conjugate() * w_ahead * dt_s_;
+    state_.X_LB.q = (state_.X_LB.q * ExpSO3(state_.dtheta_B_rad)).normalized();
     w_step_W_ = w_ahead;
     StepAhead(v_now, w_now, dt_s_);
-    state_.v_WB_W = 0.5 * (v_ahead + world_.v_W());
-    state_.w_WB_W = 0.5 * (w_ahead + world_.w_W());
+    state_.v_WB_W = 0.5 * (v_ahead + world_.v_L());
+    state_.w_WB_W = 0.5 * (w_ahead + world_.w_L());
   }
 
  private:
+  void Relocate() {
+    const Vector3d p_L = world_.p_L();
+    const SpotMove move = FindNetworkSpot(bore_, p_L, state_.spot);
+    world_.MoveTo(move);
+    state_.X_LB.p = move.crossing ? Vector3d(p_L + move.crossing->shift_L) : p_L;
+    state_.spot = move.spot;
+    state_.crossing = move.crossing;
+  }
+
   /// Kicks the ball with the loads at the present instant and lets it drift one step; fills what the state
   /// learns from that.
   void StepAhead(const Vector3d& v_now_W, const Vector3d& w_now_W, double kick_s) {
-    const BallLoad load = load_({state_.time, state_.X_WB.p, v_now_W, w_now_W, state_.spot});
-    world_.Step(state_.spot, kick_s / ball_.mass_kg * load.force_W_N,
-                kick_s / ball_.inertia_kg_m2 * load.torque_W_N_m, dt_s_);
-    state_.a_WB_W = (world_.v_W() - state_.v_step_W) / kick_s;
-    state_.alpha_WB_W = (world_.w_W() - w_step_W_) / kick_s;
+    const BallLoad load = load_({state_.time, state_.X_LB.p, v_now_W, w_now_W, state_.spot});
+    world_.Step(kick_s / ball_.mass_kg * load.force_W_N, kick_s / ball_.inertia_kg_m2 * load.torque_W_N_m,
+                dt_s_);
+    state_.a_WB_W = (world_.v_L() - state_.v_step_W) / kick_s;
+    state_.alpha_WB_W = (world_.w_L() - w_step_W_) / kick_s;
     state_.normal_force_N = world_.normal_impulse_N_s() / kick_s;
+    state_.rescues = world_.rescues();
   }
 
-  const Route& route_;
+  const Bore& bore_;
   TubeBall ball_;
   Rate rate_;
   double dt_s_;
@@ -69,9 +77,9 @@ class BallWorld::Impl {
   std::int64_t step_ = 0;
 };
 
-BallWorld::BallWorld(const Route& route, const TubeBall& ball, Rate rate, const BallStart& start,
+BallWorld::BallWorld(const Bore& bore, const TubeBall& ball, Rate rate, const BallStart& start,
                      BallLoadFunction load)
-    : impl_(std::make_unique<Impl>(route, ball, rate, start, std::move(load))) {}
+    : impl_(std::make_unique<Impl>(bore, ball, rate, start, std::move(load))) {}
 BallWorld::~BallWorld() = default;
 
 const BallState& BallWorld::state() const { return impl_->state(); }

@@ -1,12 +1,21 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "base/time.h"
-#include "sim/route_spot.h"
+#include "sim/network_spot.h"
 
 namespace piperun::sim {
+
+/// A wall or a ball that gives way: the overlap x >= 0 is pressed with k x + c dx/dt >= 0, implicit in the
+/// step.
+struct ContactCompliance {
+  double stiffness_N_m = 0;  ///< k
+  double damping_N_s_m = 0;  ///< c
+};
 
 /// A homogeneous sphere in a tube. The mass is the inertial one: the added mass of the water belongs into it.
 struct TubeBall {
@@ -15,21 +24,24 @@ struct TubeBall {
   double inertia_kg_m2 = 0;     ///< about the centre
   double friction = 0;          ///< Coulomb coefficient at the wall
   double rolling_length_m = 0;  ///< b = c_rr r: resisting torque over normal force
+  std::optional<ContactCompliance> compliance = std::nullopt;  ///< none: rigid
 };
 
+/// The axes of a drawing L (sim/bore.h) are those of W; only positions need one.
 struct BallStart {
-  Pose X_WB;
+  Pose X_LB;  ///< L: drawing of the spot's pipe
   Vector3d v_WB_W = Vector3d::Zero();
   Vector3d w_WB_W = Vector3d::Zero();
+  NetworkSpot spot;
 };
 
 /// The ball at a whole step, as the loads on it need it; velocities to second order in the step.
 struct BallInstant {
   TrueTime time{};
-  Vector3d p_WB;
+  Vector3d p_LB;
   Vector3d v_WB_W;
   Vector3d w_WB_W;
-  RouteSpot spot;
+  NetworkSpot spot;
 };
 
 struct BallLoad {
@@ -42,28 +54,29 @@ using BallLoadFunction = std::function<BallLoad(const BallInstant&)>;
 /// The ball at step n, complete.
 struct BallState {
   TrueTime time{};
-  Pose X_WB;
+  Pose X_LB;                    ///< L: drawing of the spot's pipe
   Vector3d v_WB_W, w_WB_W;      ///< mean of the half steps before and after
   Vector3d a_WB_W, alpha_WB_W;  ///< their difference over the step
-  Vector3d v_step_W;            ///< p = p_before + v_step dt
+  Vector3d v_step_W;            ///< p = p_before + v_step dt, and the shift of `crossing`
   Vector3d dtheta_B_rad;        ///< R = R_before Exp(dtheta)
-  RouteSpot spot;
-  double normal_force_N = 0;  ///< of the wall on the ball, mean over the step around `time`
+  NetworkSpot spot;
+  std::optional<SpotMove::Crossing> crossing;  ///< the step that ended at `time` led into another pipe
+  double normal_force_N = 0;  ///< of the wall on the ball, mean over the step around `time`, all contacts
+  std::int64_t rescues = 0;   ///< steps so far in which the centre had left the water; 0 in a sane network
 };
 
-/// A ball under given loads inside the pipe of a route, in a Bullet scene.
+/// A ball under given loads inside the bores of a network, in a Bullet scene.
 ///
 /// Integrated leapfrog: v(n+1/2) = v(n-1/2) + dt (F_n + contact_n)/m, p(n+1) = p(n) + dt v(n+1/2), with half
 /// a kick in the first step. F_n is evaluated at v_n = v(n-1/2) + a(n-1) dt/2, so straight motion and
-/// frictionless rocking are of second order; rolling friction on a turning contact normal is of first. The
-/// contact is inelastic and rigid; sliding friction obeys Coulomb's cone, rolling resistance a disc of radius
-/// b N. The state at step n needs the velocity half a step later: the world runs one step ahead of what it
-/// tells.
+/// frictionless rocking are of second order; rolling friction on a turning contact normal is of first, and so
+/// are impacts. The contact is inelastic, rigid or with a compliance; sliding friction obeys Coulomb's cone,
+/// rolling resistance a disc of radius b N. The state at step n needs the velocity half a step later: the
+/// world runs one step ahead of what it tells. Where pipes meet, the ball goes wherever it is pushed.
 class BallWorld {
  public:
-  /// Keeps a reference to the route. The ball must start inside the pipe, near its first piece.
-  BallWorld(const Route& route, const TubeBall& ball, Rate rate, const BallStart& start,
-            BallLoadFunction load);
+  /// Keeps a reference to the bore. The ball must start inside the water, at its spot.
+  BallWorld(const Bore& bore, const TubeBall& ball, Rate rate, const BallStart& start, BallLoadFunction load);
   ~BallWorld();
 
   const BallState& state() const;

@@ -31,40 +31,41 @@ btDefaultCollisionConstructionInfo MakeConfiguration() {
   return info;
 }
 
-btRigidBody::btRigidBodyConstructionInfo BodyInfo(const Sphere& sphere, btSphereShape& shape) {
-  const btScalar inertia = sphere.inertia_kg_m2;
-  btRigidBody::btRigidBodyConstructionInfo info(sphere.mass_kg, nullptr, &shape, {inertia, inertia, inertia});
-  info.m_friction = sphere.friction;
+btRigidBody::btRigidBodyConstructionInfo BodyInfo(const TubeBall& ball, btSphereShape& shape) {
+  const btScalar inertia = ball.inertia_kg_m2;
+  btRigidBody::btRigidBodyConstructionInfo info(ball.mass_kg, nullptr, &shape, {inertia, inertia, inertia});
+  info.m_friction = ball.friction;
   return info;
 }
 
 }  // namespace
 
-BulletWorld::BulletWorld(const Route& route, const Sphere& sphere, const Vector3d& p_W, const Vector3d& v_W,
-                         const Vector3d& w_W)
-    : wall_(route),
+BulletWorld::BulletWorld(const Bore& bore, const TubeBall& ball, const BallStart& start)
+    : wall_(bore),
+      spot_(start.spot),
+      radius_m_(ball.radius_m),
       configuration_(MakeConfiguration()),
       dispatcher_(&configuration_),
       collision_(dispatcher_),
       broadphase_(4),
-      solver_(sphere.radius_m, sphere.rolling_length_m),
+      solver_(ball.radius_m, ball.rolling_length_m),
       world_(&dispatcher_, &broadphase_, &solver_, &configuration_),
-      sphere_shape_(sphere.radius_m),
-      tube_shape_(wall_),
-      ball_(BodyInfo(sphere, sphere_shape_)) {
-  Configure(sphere);
-  const Pose& X_FW = wall_.X_FW(piece_);
-  ball_.setWorldTransform(btTransform(btQuaternion::getIdentity(), ToBullet(X_FW * p_W)));
-  ball_.setLinearVelocity(ToBullet(X_FW.q * v_W));
-  ball_.setAngularVelocity(ToBullet(X_FW.q * w_W));
+      sphere_shape_(ball.radius_m),
+      bore_shape_(ball.compliance),
+      ball_(BodyInfo(ball, sphere_shape_)) {
+  Configure(ball);
+  const Pose& X_FL = wall_.X_FL(spot_);
+  ball_.setWorldTransform(btTransform(btQuaternion::getIdentity(), ToBullet(X_FL * start.X_LB.p)));
+  ball_.setLinearVelocity(ToBullet(X_FL.q * start.v_WB_W));
+  ball_.setAngularVelocity(ToBullet(X_FL.q * start.w_WB_W));
 }
 
 BulletWorld::~BulletWorld() {
   world_.removeRigidBody(&ball_);
-  world_.removeCollisionObject(&tube_);
+  world_.removeCollisionObject(&bore_);
 }
 
-void BulletWorld::Configure(const Sphere& sphere) {
+void BulletWorld::Configure(const TubeBall& ball) {
   btContactSolverInfo& solver = world_.getSolverInfo();
   solver.m_splitImpulse = 0;  // contacts act through velocities alone, so that IMU and trajectory agree
   solver.m_erp2 = 1;
@@ -79,45 +80,49 @@ void BulletWorld::Configure(const Sphere& sphere) {
   ball_.setActivationState(DISABLE_DEACTIVATION);
   ball_.setDamping(0, 0);
   ball_.setFlags(0);  // no gyroscopic torque on a sphere
-  ball_.setFriction(sphere.friction);
+  ball_.setFriction(ball.friction);
   world_.addRigidBody(&ball_);
-  tube_.setCollisionShape(&tube_shape_);
-  tube_.setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT);
-  world_.addCollisionObject(&tube_);
+  bore_.setCollisionShape(&bore_shape_);
+  bore_.setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT);
+  world_.addCollisionObject(&bore_);
 }
 
-void BulletWorld::Rebase(std::size_t piece) {
-  const Pose& X_WF = wall_.X_WF(piece_);
-  const Pose& X_GW = wall_.X_FW(piece);
-  const Vector3d p = X_GW * (X_WF * FromBullet(ball_.getWorldTransform().getOrigin()));
-  const Vector3d v = X_GW.q * (X_WF.q * FromBullet(ball_.getLinearVelocity()));
-  const Vector3d w = X_GW.q * (X_WF.q * FromBullet(ball_.getAngularVelocity()));
+void BulletWorld::MoveTo(const SpotMove& move) {
+  const Pose X_LF = wall_.X_LF(spot_), X_GL = wall_.X_FL(move.spot);
+  const bool same_frame = move.spot.pipe == spot_.pipe && move.spot.piece == spot_.piece;
+  spot_ = move.spot;
+  if (same_frame) return;
+  const Vector3d shift_L = move.crossing ? move.crossing->shift_L : Vector3d::Zero();
+  const Vector3d p = X_GL * (X_LF * FromBullet(ball_.getWorldTransform().getOrigin()) + shift_L);
+  const Vector3d v = X_GL.q * (X_LF.q * FromBullet(ball_.getLinearVelocity()));
+  const Vector3d w = X_GL.q * (X_LF.q * FromBullet(ball_.getAngularVelocity()));
   ball_.setWorldTransform(btTransform(btQuaternion::getIdentity(), ToBullet(p)));
   ball_.setLinearVelocity(ToBullet(v));
   ball_.setAngularVelocity(ToBullet(w));
-  piece_ = piece;
 }
 
-void BulletWorld::Step(const RouteSpot& at, const Vector3d& dv_W, const Vector3d& dw_W, double dt_s) {
-  if (at.piece != piece_) Rebase(at.piece);
-  tube_shape_.set_spot(at);
-  const Quaterniond& q_FW = wall_.X_FW(piece_).q;
+void BulletWorld::Step(const Vector3d& dv_L, const Vector3d& dw_L, double dt_s) {
+  const Quaterniond& q_FL = wall_.X_FL(spot_).q;
   // kicked here and not through forces: Bullet's friction does not see torques before the step is over
-  ball_.setLinearVelocity(ball_.getLinearVelocity() + ToBullet(q_FW * dv_W));
-  ball_.setAngularVelocity(ball_.getAngularVelocity() + ToBullet(q_FW * dw_W));
+  ball_.setLinearVelocity(ball_.getLinearVelocity() + ToBullet(q_FL * dv_L));
+  ball_.setAngularVelocity(ball_.getAngularVelocity() + ToBullet(q_FL * dw_L));
+  const WallContacts contacts = wall_.Probe(spot_, FromBullet(ball_.getWorldTransform().getOrigin()),
+                                            FromBullet(ball_.getLinearVelocity()), radius_m_, dt_s);
+  bore_shape_.set_contacts(contacts);
+  rescues_ += contacts.rescue ? 1 : 0;
   world_.stepSimulation(dt_s, 0);
-  ReadContact();
+  ReadContacts();
 }
 
-Vector3d BulletWorld::p_W() const {
-  return wall_.X_WF(piece_) * FromBullet(ball_.getWorldTransform().getOrigin());
+Vector3d BulletWorld::p_L() const {
+  return wall_.X_LF(spot_) * FromBullet(ball_.getWorldTransform().getOrigin());
 }
 
-Vector3d BulletWorld::v_W() const { return wall_.X_WF(piece_).q * FromBullet(ball_.getLinearVelocity()); }
+Vector3d BulletWorld::v_L() const { return wall_.X_LF(spot_).q * FromBullet(ball_.getLinearVelocity()); }
 
-Vector3d BulletWorld::w_W() const { return wall_.X_WF(piece_).q * FromBullet(ball_.getAngularVelocity()); }
+Vector3d BulletWorld::w_L() const { return wall_.X_LF(spot_).q * FromBullet(ball_.getAngularVelocity()); }
 
-void BulletWorld::ReadContact() {
+void BulletWorld::ReadContacts() {
   normal_impulse_N_s_ = 0;
   for (int i = 0; i < dispatcher_.getNumManifolds(); ++i) {
     const btPersistentManifold& manifold = *dispatcher_.getManifoldByIndexInternal(i);

@@ -2,63 +2,60 @@
 
 #include <btBulletDynamicsCommon.h>
 
+#include <cstdint>
+
+#include "sim/bore_wall.h"
+#include "sim/bullet/bore_collision.h"
 #include "sim/bullet/rolling_solver.h"
-#include "sim/bullet/tube_collision.h"
-#include "sim/tube_wall.h"
 
 namespace piperun::sim::bullet {
 
-/// The ball as Bullet sees it: a homogeneous sphere.
-struct Sphere {
-  double radius_m = 0;
-  double mass_kg = 0;  ///< inertial: with added mass
-  double inertia_kg_m2 = 0;
-  double friction = 0;
-  double rolling_length_m = 0;
-};
-
-/// A btDiscreteDynamicsWorld with one sphere inside the tube of a route.
+/// A btDiscreteDynamicsWorld with one sphere inside a network's bores.
 ///
 /// Bullet works in the frame of the piece that holds the ball; everything said to or heard from this class is
-/// in W. Attitude stays outside: it does not act on the motion of a homogeneous sphere.
+/// in the drawing L of the ball's pipe. Attitude stays outside: it does not act on the motion of a
+/// homogeneous sphere.
 class BulletWorld {
  public:
-  /// Keeps a reference to the route. Aborts when linked with Bullet in single precision.
-  BulletWorld(const Route& route, const Sphere& sphere, const Vector3d& p_W, const Vector3d& v_W,
-              const Vector3d& w_W);
+  /// Keeps a reference to the bore. Aborts when linked with Bullet in single precision.
+  BulletWorld(const Bore& bore, const TubeBall& ball, const BallStart& start);
   ~BulletWorld();
   BulletWorld(const BulletWorld&) = delete;
   BulletWorld& operator=(const BulletWorld&) = delete;
 
-  /// One step of symplectic Euler: v += dv and w += dw, contact and friction impulses, p += v dt. `at` is the
-  /// ball's spot before the step.
-  void Step(const RouteSpot& at, const Vector3d& dv_W, const Vector3d& dw_W, double dt_s);
+  /// Where the ball is since the last step.
+  void MoveTo(const SpotMove& move);
+  /// One step of symplectic Euler: v += dv and w += dw, contact and friction impulses, p += v dt.
+  void Step(const Vector3d& dv_L, const Vector3d& dw_L, double dt_s);
 
-  Vector3d p_W() const;
-  Vector3d v_W() const;
-  Vector3d w_W() const;
-  /// Of the wall on the ball, in the last step.
+  Vector3d p_L() const;
+  Vector3d v_L() const;
+  Vector3d w_L() const;
+  /// Of the wall on the ball, in the last step: sum over the contacts.
   double normal_impulse_N_s() const { return normal_impulse_N_s_; }
+  /// Steps so far in which the ball's centre had left the water.
+  std::int64_t rescues() const { return rescues_; }
 
  private:
-  void Rebase(std::size_t piece);
-  void Configure(const Sphere& sphere);
-  void ReadContact();
+  void Configure(const TubeBall& ball);
+  void ReadContacts();
 
-  TubeWall wall_;
-  std::size_t piece_ = 0;  // whose frame Bullet works in
+  BoreWall wall_;
+  NetworkSpot spot_;  // Bullet works in the frame of its piece
+  double radius_m_;
   double normal_impulse_N_s_ = 0;
+  std::int64_t rescues_ = 0;
 
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_;
-  TubeCollision collision_;
+  BoreCollision collision_;
   btSimpleBroadphase broadphase_;
   RollingSolver solver_;
   btDiscreteDynamicsWorld world_;
   btSphereShape sphere_shape_;
-  TubeShape tube_shape_;
+  BoreShape bore_shape_;
   btRigidBody ball_;
-  btCollisionObject tube_;
+  btCollisionObject bore_;
 };
 
 }  // namespace piperun::sim::bullet

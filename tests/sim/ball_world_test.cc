@@ -11,8 +11,9 @@
 namespace piperun::sim {
 namespace {
 
-using testing::MakePipeLine;
-using testing::PipeLine;
+using testing::BoreNetwork;
+using testing::FindSpot;
+using testing::MakeBoreLine;
 
 // The reference ball (60 mm, SG 1.10) in water of 1000 kg/m3 in a 150 mm pipe, with added mass 0.5.
 constexpr double kRadius = 0.03, kBore = 0.075, kRun = kBore - kRadius;
@@ -29,9 +30,9 @@ TubeBall Ball(double friction = 0.5, double rolling_length_m = 0) {
 
 BallLoad Weight(const BallInstant&) { return {{0, 0, -kWeight}, Vector3d::Zero()}; }
 
-BallStart At(const Vector3d& p_W, const Vector3d& v_W = Vector3d::Zero(),
+BallStart At(const BoreNetwork& line, const Vector3d& p_W, const Vector3d& v_W = Vector3d::Zero(),
              const Vector3d& w_W = Vector3d::Zero()) {
-  return {{p_W, Quaterniond::Identity()}, v_W, w_W};
+  return {{p_W, Quaterniond::Identity()}, v_W, w_W, FindSpot(line.network, 0, p_W)};
 }
 
 void RunSteps(BallWorld& world, int steps) {
@@ -39,13 +40,13 @@ void RunSteps(BallWorld& world, int steps) {
 }
 
 TEST(BallWorld, FreeFallIsTheLeapfrogParabola) {
-  const PipeLine line = MakePipeLine({{0, 0, 100}, {0, 0, 0}});
-  BallWorld world(line.route, Ball(), Rate(1000), At({0, 0, 99}, {0.01, 0, 0}), Weight);
+  const BoreNetwork line = MakeBoreLine({{0, 0, 100}, {0, 0, 0}});
+  BallWorld world(line.bore, Ball(), Rate(1000), At(line, {0, 0, 99}, {0.01, 0, 0}), Weight);
   RunSteps(world, 1000);
   const double a = kWeight / kInertial;
-  EXPECT_NEAR(world.state().X_WB.p.z(), 99 - 0.5 * a, 1e-11);
+  EXPECT_NEAR(world.state().X_LB.p.z(), 99 - 0.5 * a, 1e-11);
   EXPECT_NEAR(world.state().v_WB_W.z(), -a, 1e-12);
-  EXPECT_NEAR(world.state().X_WB.p.x(), 0.01, 1e-13);
+  EXPECT_NEAR(world.state().X_LB.p.x(), 0.01, 1e-13);
   EXPECT_EQ(world.state().normal_force_N, 0);
 }
 
@@ -53,12 +54,12 @@ TEST(BallWorld, RollsDownAnInclineWithAddedMassAndRotaryInertia) {
   // a = (m - rho V) g sin(slope) / (m + m_a + I/r^2)
   const double slope = 0.1;
   const Vector3d t(std::cos(slope), 0, -std::sin(slope)), up(std::sin(slope), 0, std::cos(slope));
-  const PipeLine line = MakePipeLine({{0, 0, 0}, 50 * t});
-  BallWorld world(line.route, Ball(), Rate(1000), At(-kRun * up), Weight);
+  const BoreNetwork line = MakeBoreLine({{0, 0, 0}, 50 * t});
+  BallWorld world(line.bore, Ball(), Rate(1000), At(line, -kRun * up), Weight);
   RunSteps(world, 5000);
   const double a = kWeight * std::sin(slope) / kRolling;
   EXPECT_NEAR(world.state().v_WB_W.dot(t) / (5 * a), 1, 1e-10);
-  EXPECT_NEAR(world.state().X_WB.p.dot(t) / (0.5 * a * 25), 1, 1e-10);
+  EXPECT_NEAR(world.state().X_LB.p.dot(t) / (0.5 * a * 25), 1, 1e-10);
   EXPECT_NEAR(world.state().w_WB_W.y() * kRadius / world.state().v_WB_W.norm(), 1, 1e-10);
   EXPECT_NEAR(world.state().normal_force_N, kWeight * std::cos(slope), 1e-9);
 }
@@ -67,8 +68,8 @@ TEST(BallWorld, SlidesDownASteepInclineWithCoulombFriction) {
   // tan(slope) > mu (1 + (m + m_a) r^2 / I): it slides, a = W (sin - mu cos)/(m + m_a)
   const double slope = 0.9, mu = 0.1;
   const Vector3d t(std::cos(slope), 0, -std::sin(slope)), up(std::sin(slope), 0, std::cos(slope));
-  const PipeLine line = MakePipeLine({{0, 0, 0}, 50 * t});
-  BallWorld world(line.route, Ball(mu), Rate(1000), At(-kRun * up), Weight);
+  const BoreNetwork line = MakeBoreLine({{0, 0, 0}, 50 * t});
+  BallWorld world(line.bore, Ball(mu), Rate(1000), At(line, -kRun * up), Weight);
   RunSteps(world, 2000);
   const double a = kWeight * (std::sin(slope) - mu * std::cos(slope)) / kInertial;
   EXPECT_NEAR(world.state().v_WB_W.dot(t) / (2 * a), 1, 1e-10);
@@ -77,8 +78,8 @@ TEST(BallWorld, SlidesDownASteepInclineWithCoulombFriction) {
 
 TEST(BallWorld, SlidingTurnsIntoRollingAtTheSpeedThatAngularMomentumGives) {
   // about the contact: (m + m_a) v0 = (m + m_a + I/r^2) v
-  const PipeLine line = MakePipeLine({{0, 0, 0}, {50, 0, 0}});
-  BallWorld world(line.route, Ball(0.3), Rate(1000), At({0, 0, -kRun}, {1, 0, 0}), Weight);
+  const BoreNetwork line = MakeBoreLine({{0, 0, 0}, {50, 0, 0}});
+  BallWorld world(line.bore, Ball(0.3), Rate(1000), At(line, {0, 0, -kRun}, {1, 0, 0}), Weight);
   RunSteps(world, 3000);
   EXPECT_NEAR(world.state().v_WB_W.x(), kInertial / kRolling, 1e-9);
   EXPECT_NEAR(world.state().w_WB_W.y() * kRadius, kInertial / kRolling, 1e-9);
@@ -87,10 +88,10 @@ TEST(BallWorld, SlidingTurnsIntoRollingAtTheSpeedThatAngularMomentumGives) {
 TEST(BallWorld, RollingResistanceDeceleratesByItsLength) {
   // a = b N / (r (m + m_a + I/r^2)), in any direction along the pipe
   for (const double crr : {0.002, 0.02}) {
-    const PipeLine line = MakePipeLine({{0, 0, 0}, {30, 40, 0}});
+    const BoreNetwork line = MakeBoreLine({{0, 0, 0}, {30, 40, 0}});
     const Vector3d t(0.6, 0.8, 0), axis(-0.8, 0.6, 0);
-    BallWorld world(line.route, Ball(0.5, crr * kRadius), Rate(1000),
-                    At({0, 0, -kRun}, 1.2 * t, 1.2 / kRadius * axis), Weight);
+    BallWorld world(line.bore, Ball(0.5, crr * kRadius), Rate(1000),
+                    At(line, {0, 0, -kRun}, 1.2 * t, 1.2 / kRadius * axis), Weight);
     RunSteps(world, 2000);
     const double a = crr * kWeight / kRolling;
     EXPECT_NEAR((1.2 - world.state().v_WB_W.dot(t)) / (2 * a), 1, 1e-9) << crr;
@@ -99,10 +100,10 @@ TEST(BallWorld, RollingResistanceDeceleratesByItsLength) {
 
 TEST(BallWorld, RollingResistanceHoldsABallAtRest) {
   // pushed with less than b N / r it stays; with more it rolls with the difference
-  const PipeLine line = MakePipeLine({{0, 0, 0}, {50, 0, 0}});
+  const BoreNetwork line = MakeBoreLine({{0, 0, 0}, {50, 0, 0}});
   const double limit = 0.02 * kWeight;
   const auto push = [&](double force) {
-    BallWorld world(line.route, Ball(0.5, 0.02 * kRadius), Rate(1000), At({0, 0, -kRun}),
+    BallWorld world(line.bore, Ball(0.5, 0.02 * kRadius), Rate(1000), At(line, {0, 0, -kRun}),
                     [force](const BallInstant&) {
                       return BallLoad{{force, 0, -kWeight}, Vector3d::Zero()};
                     });
@@ -115,16 +116,16 @@ TEST(BallWorld, RollingResistanceHoldsABallAtRest) {
 
 TEST(BallWorld, RollingForwardHardlyDampsRocking) {
   // the resisting torque opposes the rolling velocity: of its size b N only w_x / |w| acts on a slow rocking
-  const PipeLine line = MakePipeLine({{0, 0, 0}, {50, 0, 0}});
+  const BoreNetwork line = MakeBoreLine({{0, 0, 0}, {50, 0, 0}});
   const double v = 1, rock = 0.02, crr = 0.01;
-  BallWorld world(line.route, Ball(0.5, crr * kRadius), Rate(1000),
-                  At({0, 0, -kRun}, {v, rock, 0}, {-rock / kRadius, v / kRadius, 0}), Weight);
+  BallWorld world(line.bore, Ball(0.5, crr * kRadius), Rate(1000),
+                  At(line, {0, 0, -kRun}, {v, rock, 0}, {-rock / kRadius, v / kRadius, 0}), Weight);
   RunSteps(world, 1000);
   // linear damping c = crr W / (M v) for the sideways speed, half of it on the amplitude: exp(-c t/2) = 0.88
   // in the mean over the slowing run; plain Coulomb friction would have stopped it after 0.02/(crr W/M) =
   // 0.37 s
   const double mechanical =
-      std::hypot(world.state().v_WB_W.y(), world.state().X_WB.p.y() * std::sqrt(kWeight / (kRolling * kRun)));
+      std::hypot(world.state().v_WB_W.y(), world.state().X_LB.p.y() * std::sqrt(kWeight / (kRolling * kRun)));
   const double c = crr * kWeight / kRolling / v;
   EXPECT_NEAR(mechanical / rock, std::exp(-0.5 * c), 0.01);
 }
@@ -148,15 +149,15 @@ struct Rocking {
 };
 
 Rocking RockFor(double seconds, double amplitude, double rate_Hz) {
-  const PipeLine line = MakePipeLine({{0, 0, 0}, {5, 0, 0}});
+  const BoreNetwork line = MakeBoreLine({{0, 0, 0}, {5, 0, 0}});
   const Vector3d start(1, kRun * std::sin(amplitude), -kRun * std::cos(amplitude));
-  BallWorld world(line.route, Ball(), Rate(rate_Hz), At(start), Weight);
+  BallWorld world(line.bore, Ball(), Rate(rate_Hz), At(line, start), Weight);
   Rocking rocking;
   double y = start.y(), v = 0, largest = 0;
   const double dt = 1 / rate_Hz;
   for (std::int64_t k = 1; Seconds(SampleOffset(k, Rate(rate_Hz))) < seconds; ++k) {
     world.Step();
-    const double y_new = world.state().X_WB.p.y(), v_new = world.state().v_WB_W.y();
+    const double y_new = world.state().X_LB.p.y(), v_new = world.state().v_WB_W.y();
     if (y * y_new < 0) {
       double s = y / (y - y_new);  // Newton on the Hermite cubic
       for (int i = 0; i < 5; ++i) {
@@ -170,7 +171,7 @@ Rocking RockFor(double seconds, double amplitude, double rate_Hz) {
     }
     y = y_new;
     v = v_new;
-    largest = std::max(largest, std::abs(std::atan2(y, -world.state().X_WB.p.z())));
+    largest = std::max(largest, std::abs(std::atan2(y, -world.state().X_LB.p.z())));
   }
   return rocking;
 }
@@ -197,11 +198,11 @@ TEST(BallWorld, RockingConvergesWithSecondOrder) {
 TEST(BallWorld, StraightRollAnywhereHasNoSpuriousSpecificForce) {
   // far from the origin, at an odd angle, in a long pipe; friction, rolling resistance and drag at work
   const Vector3d from(412.3, -230.7, 61.9);
-  const PipeLine line = MakePipeLine({from, from + Vector3d(80, 61, -7)});
+  const BoreNetwork line = MakeBoreLine({from, from + Vector3d(80, 61, -7)});
   for (const double rate : {1000.0, 4000.0}) {
-    const CentrelinePoint axis = line.route.Eval(0);
+    const CentrelinePoint axis = line.network.pipe(0).Eval(0);
     const Vector3d up = (Vector3d::UnitZ() - axis.tangent_W.z() * axis.tangent_W).normalized();
-    BallWorld world(line.route, Ball(0.5, 0.01 * kRadius), Rate(rate), At(axis.p_W - kRun * up),
+    BallWorld world(line.bore, Ball(0.5, 0.01 * kRadius), Rate(rate), At(line, axis.p_W - kRun * up),
                     [&](const BallInstant& ball) {
                       const Vector3d u = axis.tangent_W - ball.v_WB_W;
                       return BallLoad{0.6 * u.norm() * u - Vector3d(0, 0, kWeight), -1e-5 * ball.w_WB_W};
@@ -236,20 +237,22 @@ TEST(BallWorld, ClimbsTheOuterWallOfABendByTheBalanceOfForces) {
     phi = std::atan((kRolling - carried) * v * v / (bend_radius + kRun * std::sin(phi)) / kWeight);
   }
   const double rho = bend_radius + kRun * std::sin(phi);
-  const PipeLine line = MakePipeLine({{0, 0, 0}, {0.45, 0, 0}, {0.45, 5, 0}}, {.bend_radius_m = bend_radius});
-  ASSERT_EQ(line.route.pieces().size(), 2U);  // it begins with the bend, turning left about (0, 0.45)
+  const BoreNetwork line =
+      MakeBoreLine({{0, 0, 0}, {0.45, 0, 0}, {0.45, 5, 0}}, {.bend_radius_m = bend_radius});
+  ASSERT_EQ(line.network.pipe(0).centreline.size(),
+            2U);  // it begins with the bend, turning left about (0, 0.45)
   const Vector3d outward(0, -1, 0);
   const Vector3d n = -std::sin(phi) * outward + std::cos(phi) * Vector3d::UnitZ();
   const Vector3d p(0, -kRun * std::sin(phi), -kRun * std::cos(phi)), velocity(v, 0, 0);
-  BallWorld world(line.route, Ball(0.9), Rate(1000), At(p, velocity, n.cross(velocity) / kRadius),
+  BallWorld world(line.bore, Ball(0.9), Rate(1000), At(line, p, velocity, n.cross(velocity) / kRadius),
                   [&](const BallInstant& ball) {
-                    const Vector3d to_centre = Vector3d(0, bend_radius, ball.p_WB.z()) - ball.p_WB;
+                    const Vector3d to_centre = Vector3d(0, bend_radius, ball.p_LB.z()) - ball.p_LB;
                     return BallLoad{carried * v * v / rho * to_centre.normalized() - Vector3d(0, 0, kWeight),
                                     Vector3d::Zero()};
                   });
   double largest = 0;
   while (world.state().spot.piece == 0) {
-    const Vector3d d = world.state().X_WB.p - world.state().spot.axis.p_W;
+    const Vector3d d = world.state().X_LB.p - world.state().spot.axis.p_W;
     const double angle = std::atan2(-d.dot(world.state().spot.axis.curvature_W.normalized()), -d.z());
     largest = std::max(largest, std::abs(angle - phi));
     world.Step();
@@ -261,51 +264,51 @@ TEST(BallWorld, ClimbsTheOuterWallOfABendByTheBalanceOfForces) {
 
 TEST(BallWorld, PassesThroughItsOwnCrossingAsIfItWereAlone) {
   // a figure of eight in one plane: the second passage of the crossing looks like any straight
-  const PipeLine line = MakePipeLine({{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {2, 2, 0}, {2, -2, 0}});
+  const BoreNetwork line = MakeBoreLine({{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {2, 2, 0}, {2, -2, 0}});
   const Vector3d v(1, 0, 0);
-  BallWorld world(line.route, Ball(), Rate(1000),
-                  At({0.5, 0, -kRun}, v, Vector3d::UnitZ().cross(v) / kRadius), Weight);
-  double largest = 0, crossing = line.route.length_m() - 2;
-  while (world.state().spot.chainage_m < crossing + 0.5) {
-    if (world.state().spot.chainage_m > crossing - 0.5) {
-      const Vector3d d = world.state().X_WB.p - world.state().spot.axis.p_W;
+  BallWorld world(line.bore, Ball(), Rate(1000),
+                  At(line, {0.5, 0, -kRun}, v, Vector3d::UnitZ().cross(v) / kRadius), Weight);
+  double largest = 0, crossing = line.network.pipe(0).length_m - 2;
+  while (world.state().spot.s_m < crossing + 0.5) {
+    if (world.state().spot.s_m > crossing - 0.5) {
+      const Vector3d d = world.state().X_LB.p - world.state().spot.axis.p_W;
       EXPECT_NEAR(d.norm(), kRun, 1e-9);
       largest = std::max(largest, world.state().a_WB_W.norm());
     }
     world.Step();
   }
   EXPECT_LT(largest, 2.5);  // rocking after the bends: at most W/M sin + v^2/(R - r), far from a bump's 100
-  EXPECT_NEAR(world.state().X_WB.p.x(), 2, 0.05);
+  EXPECT_NEAR(world.state().X_LB.p.x(), 2, 0.05);
 }
 
 TEST(BallWorld, ClosedLoopEndsWhereItBeganWithoutMeetingItsStart) {
-  const PipeLine line =
-      MakePipeLine({{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}, {0, 0, 0}}, {.bend_radius_m = 1});
+  const BoreNetwork line =
+      MakeBoreLine({{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}, {0, 0, 0}}, {.bend_radius_m = 1});
   const Vector3d v(0.5, 0, 0);
-  BallWorld world(line.route, Ball(), Rate(1000), At({0, 0, -kRun}, v, Vector3d::UnitZ().cross(v) / kRadius),
-                  Weight);
-  while (world.state().spot.chainage_m < line.route.length_m() && Seconds(world.state().time) < 60)
+  BallWorld world(line.bore, Ball(), Rate(1000),
+                  At(line, {0, 0, -kRun}, v, Vector3d::UnitZ().cross(v) / kRadius), Weight);
+  while (world.state().spot.s_m < line.network.pipe(0).length_m && Seconds(world.state().time) < 60)
     world.Step();
-  EXPECT_GE(world.state().spot.chainage_m, line.route.length_m());
-  EXPECT_EQ(world.state().spot.piece, line.route.pieces().size() - 1);
-  EXPECT_NEAR(world.state().X_WB.p.x(), 0, kRun + 1e-9);
+  EXPECT_GE(world.state().spot.s_m, line.network.pipe(0).length_m);
+  EXPECT_EQ(world.state().spot.piece, line.network.pipe(0).centreline.size() - 1);
+  EXPECT_NEAR(world.state().X_LB.p.x(), 0, kRun + 1e-9);
 }
 
 TEST(BallWorld, StopsAtTheWallWhenTheStepIsLong) {
-  const PipeLine line = MakePipeLine({{0, 0, 0}, {50, 0, 0}});
-  BallWorld world(line.route, Ball(), Rate(100), At({0, 0, 0}, {0, 2, 3}), Weight);
+  const BoreNetwork line = MakeBoreLine({{0, 0, 0}, {50, 0, 0}});
+  BallWorld world(line.bore, Ball(), Rate(100), At(line, {0, 0, 0}, {0, 2, 3}), Weight);
   double farthest = 0;
   for (int i = 0; i < 500; ++i) {
     world.Step();
-    farthest = std::max(farthest, (world.state().X_WB.p - world.state().spot.axis.p_W).norm());
+    farthest = std::max(farthest, (world.state().X_LB.p - world.state().spot.axis.p_W).norm());
   }
   EXPECT_LT(farthest, kRun + 1e-6);
 }
 
 TEST(BallWorld, TwoWorldsGiveTheSameBits) {
-  const PipeLine line = MakePipeLine({{0, 0, 0}, {3, 0, 0}, {3, 3, 1}});
+  const BoreNetwork line = MakeBoreLine({{0, 0, 0}, {3, 0, 0}, {3, 3, 1}});
   const auto run = [&] {
-    BallWorld world(line.route, Ball(0.4, 3e-4), Rate(1000), At({0, 0.01, -kRun + 1e-3}),
+    BallWorld world(line.bore, Ball(0.4, 3e-4), Rate(1000), At(line, {0, 0.01, -kRun + 1e-3}),
                     [](const BallInstant& b) {
                       return BallLoad{0.5 * (b.spot.axis.tangent_W - b.v_WB_W) - Vector3d(0, 0, kWeight),
                                       -1e-5 * b.w_WB_W};
@@ -314,8 +317,8 @@ TEST(BallWorld, TwoWorldsGiveTheSameBits) {
     return world.state();
   };
   const BallState a = run(), b = run();
-  EXPECT_EQ(a.X_WB.p, b.X_WB.p);
-  EXPECT_EQ(a.X_WB.q.coeffs(), b.X_WB.q.coeffs());
+  EXPECT_EQ(a.X_LB.p, b.X_LB.p);
+  EXPECT_EQ(a.X_LB.q.coeffs(), b.X_LB.q.coeffs());
   EXPECT_EQ(a.v_step_W, b.v_step_W);
   EXPECT_EQ(a.w_WB_W, b.w_WB_W);
 }
