@@ -70,12 +70,14 @@ BallStart MakeStart(const MotionContext& context, double lateral_sd_m) {
 
 TubeBall MakeTubeBall(const BallParams& ball, const FluidLoadCoefficients& c) {
   const double r = ball.radius_m;
+  std::optional<ContactCompliance> compliance;
+  if (ball.contact_stiffness_N_m) compliance = {*ball.contact_stiffness_N_m, ball.contact_damping_N_s_m};
   return {r,
           ball.mass_kg() + c.added_mass_kg,
           ball.inertia_factor * ball.mass_kg() * r * r,
           ball.friction,
           ball.rolling_resistance * r,
-          ball.compliance()};
+          compliance};
 }
 
 class BallInPipe : public Motion {
