@@ -10,6 +10,7 @@
 #include "scenarios/network_report.h"
 #include "scenarios/output_file.h"
 #include "sim/network/inp_reader.h"
+#include "tools/piperun/ball_way_text.h"
 #include "tools/piperun/command.h"
 #include "tools/piperun/network_text.h"
 #include "tools/piperun/progress_bar.h"

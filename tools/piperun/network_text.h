@@ -11,8 +11,4 @@ namespace piperun::tools {
 std::string DescribeNetwork(const sim::HydraulicModel& model, const scenarios::NetworkSolution& solution,
                             bool whole);
 
-/// Which links the ball asked about passes, and where water takes it.
-std::string DescribeBallWays(const sim::HydraulicModel& model, const sim::HydraulicState& state,
-                             const scenarios::BallQuestion& question, bool whole);
-
 }  // namespace piperun::tools
