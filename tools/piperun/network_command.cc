@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -57,6 +58,9 @@ scenarios::BallQuestion ReadQuestion(const sim::HydraulicModel& model, const Net
 
 sim::HydraulicModel LoadNetwork(const std::string& path) {
   std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    throw InputError("this is a folder; give an EPANET input file", "", path);
+  }
   const auto size = std::filesystem::file_size(path, ignored);
   if (!ignored && size > sim::kMaxInpBytes) sim::RefuseSize(size, path);
   return sim::ReadInp(scenarios::ReadTextFile(path), path);
@@ -103,6 +107,7 @@ int ReportNetwork(sim::HydraulicModel model, const NetworkArguments& arguments, 
     model.options.accuracy =
         ReadOption(arguments.accuracy, "--accuracy", {.min = 0, .max = 0.1, .min_open = true});
   }
+  if (arguments.csv && display.json) throw InputError("choose one of --csv and --json", "--csv");
   const scenarios::BallQuestion question = ReadQuestion(model, arguments);
   const scenarios::NetworkSolution solution = Solve(model, arguments, display);
   Print(model, solution, question, arguments, display);
