@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "sim/network/epanet_constants.h"
+#include "sim/network/fixed_power.h"
 
 namespace piperun::sim {
 namespace {
@@ -17,6 +18,7 @@ constexpr double kMinusTwoByLn10 = -2 / std::numbers::ln10;
 constexpr double kTurbulentW = 1000 * pi;  // Re = 4000
 constexpr double kLaminarW = 500 * pi;     // Re = 2000
 const double kSwameeJain = 5.74 * std::pow(pi / 4, 0.9);
+const FixedPower kReynoldsPower(0.9);
 const double kSwameeJainAt4000 = 5.74 / std::pow(4000, 0.9);
 
 double Square(double x) { return x * x; }
@@ -64,26 +66,11 @@ double CalcMinorLoss_s2_m5(double loss_coefficient, double diameter_m) {
   return epanet::kMinorLoss_s2_m * loss_coefficient / Square(Square(diameter_m));
 }
 
-HeadLoss CalcPowerLoss(double flow_m3_s, const PipeResistance& pipe, double exponent,
-                       double least_slope_s_m2) {
-  const double q = std::abs(flow_m3_s);
-  const double power = exponent == 2 ? q : std::pow(q, exponent - 1);
-  double slope = exponent * pipe.friction * power;
-  double loss = slope * q / exponent;
-  if (slope < least_slope_s_m2) {
-    slope = least_slope_s_m2 / exponent;
-    loss = slope * q;
-  }
-  loss += pipe.minor_s2_m5 * q * q;
-  slope += 2 * pipe.minor_s2_m5 * q;
-  return {std::copysign(loss, flow_m3_s), slope};
-}
-
 FrictionFactor CalcTurbulentFriction(double flow_m3_s, const PipeResistance& pipe) {
   const double q = std::abs(flow_m3_s);
   const double w = q / pipe.viscous_flow_m3_s;
   if (w < kTurbulentW) return CalcTransitionalFriction(w, pipe);
-  const double y1 = kSwameeJain / std::pow(w, 0.9);
+  const double y1 = kSwameeJain / kReynoldsPower(w);
   const double y2 = pipe.relative_roughness / 3.7 + y1;
   const double y3 = kMinusTwoByLn10 * std::log(y2);
   const double f = 1 / (y3 * y3);

@@ -25,11 +25,17 @@ PipeResistance CalcPipeResistance(const PipeLink& pipe, const HydraulicOptions& 
 /// Coefficient m of a minor loss h = m q^2 = K v^2/(2 g).
 double CalcMinorLoss_s2_m5(double loss_coefficient, double diameter_m);
 
-/// h = (r |q|^(n-1) + m |q|) q: Hazen-Williams (n = 1.852) and Chezy-Manning (n = 2). Below the slope
-/// `least_slope` the friction is made linear, so that a still pipe does not stall Newton's method; the break
-/// in the curve is EPANET's.
-HeadLoss CalcPowerLoss(double flow_m3_s, const PipeResistance& pipe, double exponent,
-                       double least_slope_s_m2);
+/// h = (r |q|^(n-1) + m |q|) q: Hazen-Williams (n = 1.852) and Chezy-Manning (n = 2), `power` = |q|^(n-1).
+/// Below the slope `least_slope` the friction is made linear, so that a still pipe does not stall Newton's
+/// method; the break in the curve is EPANET's.
+inline HeadLoss CalcPowerLoss(double flow_m3_s, double power, double exponent, const PipeResistance& pipe,
+                              double least_slope_s_m2) {
+  double per_flow = pipe.friction * power;
+  double slope = exponent * per_flow;
+  if (slope < least_slope_s_m2) slope = per_flow = least_slope_s_m2 / exponent;
+  const double minor = pipe.minor_s2_m5 * std::abs(flow_m3_s);
+  return {(per_flow + minor) * flow_m3_s, slope + 2 * minor};
+}
 
 /// Friction factor and its derivative by the flow: Swamee & Jain, J. Hydraul. Div. ASCE 102, 657 (1976), for
 /// Re >= 4000; Dunlop's cubic (1991) between 2000 and 4000.

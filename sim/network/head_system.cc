@@ -100,23 +100,44 @@ void HeadSystem::Clear() {
   std::fill(right_.begin(), right_.end(), 0.0);
 }
 
-/// Eliminates column after column: A_ij -= A_ik A_jk / d_k.
-bool HeadSystem::Factorize() {
+/// Eliminates column after column, A_ij -= A_ik A_jk / d_k, and with it the right-hand side, r_i -= l_ik r_k.
+bool HeadSystem::Eliminate() {
   const int* target = target_.data();
+  int p = 0;
   for (int k = 0; k < size_; ++k) {
     if (!(diagonal_[k] > 0)) {
       bad_junction_ = junction_[k];
       return false;
     }
-    const double inverse = 1 / diagonal_[k];
-    const int end = column_begin_[k + 1];
-    for (int p = column_begin_[k]; p < end; ++p) {
+    const double inverse = diagonal_[k] = 1 / diagonal_[k];
+    const double right = right_[k];
+    for (const int end = column_begin_[k + 1]; p < end; ++p) {
       const double value = lower_[p], l = value * inverse;
       diagonal_[entry_row_[p]] -= l * value;
+      right_[entry_row_[p]] -= l * right;
       for (int q = p + 1; q < end; ++q) lower_[*target++] -= l * lower_[q];
       lower_[p] = l;
     }
   }
+  return true;
+}
+
+void HeadSystem::SubstituteBack() {
+  int p = column_begin_[size_];
+  for (int k = size_ - 1; k >= 0; --k) {
+    double value = right_[k] * diagonal_[k];
+    for (const int begin = column_begin_[k]; p > begin;) {
+      --p;
+      value -= lower_[p] * right_[entry_row_[p]];
+    }
+    right_[k] = value;
+  }
+  right_[size_] = 0;
+}
+
+bool HeadSystem::Solve() {
+  if (!Eliminate()) return false;
+  SubstituteBack();
   return true;
 }
 
@@ -125,18 +146,7 @@ void HeadSystem::SolveAgain() {
     const double value = right_[k];
     for (int p = column_begin_[k]; p < column_begin_[k + 1]; ++p) right_[entry_row_[p]] -= lower_[p] * value;
   }
-  for (int k = size_ - 1; k >= 0; --k) {
-    double value = right_[k] / diagonal_[k];
-    for (int p = column_begin_[k]; p < column_begin_[k + 1]; ++p) value -= lower_[p] * right_[entry_row_[p]];
-    right_[k] = value;
-  }
-  right_[size_] = 0;
-}
-
-bool HeadSystem::Solve() {
-  if (!Factorize()) return false;
-  SolveAgain();
-  return true;
+  SubstituteBack();
 }
 
 }  // namespace piperun::sim

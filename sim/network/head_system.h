@@ -17,16 +17,15 @@ class HeadSystem {
   HeadSystem(int junction_count, const std::vector<std::pair<int, int>>& ends);
 
   void Clear();
-  void AddLink(int link, double conductance) {
+  /// A link: how its flow follows the heads, and the flow it takes from its first node and brings to its
+  /// second.
+  void AddLink(int link, double conductance, double flow) {
     const Place& place = places_[link];
     lower_[place.off_diagonal] -= conductance;
     diagonal_[place.from_row] += conductance;
     diagonal_[place.to_row] += conductance;
-  }
-  /// Water that a link takes from its first node and brings to its second.
-  void AddFlow(int link, double flow) {
-    right_[places_[link].from_row] -= flow;
-    right_[places_[link].to_row] += flow;
+    right_[place.from_row] -= flow;
+    right_[place.to_row] += flow;
   }
   void AddDiagonal(int junction, double conductance) { diagonal_[row_[junction]] += conductance; }
   void AddRight(int junction, double excess) { right_[row_[junction]] += excess; }
@@ -53,7 +52,8 @@ class HeadSystem {
   void FindPattern(const std::vector<std::pair<int, int>>& ends);
   void FindTargets();
   int FindEntry(int row, int column) const;
-  bool Factorize();
+  bool Eliminate();
+  void SubstituteBack();
 
   int size_;
   std::vector<int> row_;           // of a junction
@@ -62,7 +62,7 @@ class HeadSystem {
   std::vector<int> entry_row_;
   std::vector<int> target_;  // for each product of two entries of a column, the entry it is subtracted from
   std::vector<Place> places_;
-  std::vector<double> diagonal_;  // A's, then D
+  std::vector<double> diagonal_;  // A's, then 1/D
   std::vector<double> lower_;     // A's, then L
   std::vector<double> right_;     // r, then the solution
   int bad_junction_ = -1;

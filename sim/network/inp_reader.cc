@@ -7,12 +7,14 @@
 
 namespace piperun::sim {
 
+void RefuseSize(std::uintmax_t bytes, std::string_view name) {
+  throw InputError("the file has " + std::to_string(bytes >> 20) + " MiB; an EPANET input file has at most " +
+                       std::to_string(kMaxInpBytes >> 20),
+                   {}, std::string(name));
+}
+
 HydraulicModel ReadInp(std::string_view text, std::string_view name) {
-  if (text.size() > kMaxInpBytes) {
-    throw InputError("the file has " + std::to_string(text.size() >> 20) +
-                         " MiB; an EPANET input file has at most " + std::to_string(kMaxInpBytes >> 20),
-                     {}, std::string(name));
-  }
+  if (text.size() > kMaxInpBytes) RefuseSize(text.size(), name);
   const InpSections sections = SplitInp(text, name);
   InpDraft draft;
   draft.model.name = name;

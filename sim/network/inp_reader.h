@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string_view>
 
 #include "sim/network/model.h"
@@ -8,6 +9,10 @@ namespace piperun::sim {
 
 /// The greatest text ReadInp takes, some ten times the largest network in public use.
 inline constexpr std::size_t kMaxInpBytes = 32u << 20;
+
+/// Throws the InputError of a text that is too long: whoever has a file may ask for its size before reading
+/// it.
+[[noreturn]] void RefuseSize(std::uintmax_t bytes, std::string_view name);
 
 /// Reads an EPANET 2.2 or 2.3 input file: every section, US and SI units, comments, Latin-1 or UTF-8, any
 /// order, keywords in any case and cut to EPANET's stems. Numbers become SI the way EPANET reads them (its

@@ -143,13 +143,21 @@ class RuleReader {
               "' begins no clause; allowed: RULE, IF, AND, OR, THEN, ELSE, PRIORITY, DISABLED");
   }
 
+  /// At the end of a rule: it must do something.
+  void Finish() const {
+    if (part_ == Part::kHead || part_ == Part::kIf)
+      heading_->Fail("the rule '" + (*heading_)[1] + "' has no THEN; the file may be cut short");
+  }
+
  private:
   enum class Part { kNone, kHead, kIf, kThen, kElse, kEnd };
 
   Rule& rule() { return draft_.model.rules.back(); }
 
   void Begin(const InpLine& line) {
+    Finish();
     line.RequireWords(2, "RULE id");
+    heading_ = &line;
     draft_.model.rules.push_back({line[1], {}, {}, {}, 0});
     part_ = Part::kHead;
   }
@@ -187,6 +195,7 @@ class RuleReader {
   }
 
   InpDraft& draft_;
+  const InpLine* heading_ = nullptr;
   Part part_ = Part::kNone;
 };
 
@@ -195,6 +204,7 @@ class RuleReader {
 void ReadRules(const InpSections& sections, InpDraft& draft) {
   RuleReader reader(draft);
   for (const InpLine& line : Lines(sections, InpSection::kRules)) reader.Read(line);
+  reader.Finish();
 }
 
 }  // namespace piperun::sim

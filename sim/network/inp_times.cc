@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "sim/network/inp_draft.h"
 
@@ -29,13 +30,18 @@ std::int64_t* FindField(const InpLine& line, HydraulicTimes& times) {
   return nullptr;
 }
 
-/// EPANET's defaults, and its rule that no step is longer than those it serves.
-void Complete(HydraulicTimes& times) {
+bool IsStep(const InpLine& line) { return BeginsWith(line[1], "TIME"); }
+
+/// EPANET's defaults, which a step of 0 asks for, and its rule that no step is longer than those it serves.
+void Complete(HydraulicTimes& times, std::vector<std::string>& notes) {
   if (times.pattern_step_s == 0) times.pattern_step_s = 3600;
   if (times.report_step_s == 0) times.report_step_s = times.pattern_step_s;
   if (times.hydraulic_step_s == 0) times.hydraulic_step_s = 3600;
   times.hydraulic_step_s = std::min({times.hydraulic_step_s, times.pattern_step_s, times.report_step_s});
-  if (times.report_start_s > times.duration_s) times.report_start_s = 0;
+  if (times.report_start_s > times.duration_s) {
+    notes.push_back("[TIMES] REPORT START lies behind the end of the period: every step is reported");
+    times.report_start_s = 0;
+  }
   if (times.rule_step_s == 0) times.rule_step_s = times.hydraulic_step_s / 10;
   times.rule_step_s = std::max<std::int64_t>(1, std::min(times.rule_step_s, times.hydraulic_step_s));
   times.start_clock_s %= kDay_s;
@@ -56,13 +62,16 @@ void ReadTimes(const InpSections& sections, InpDraft& draft) {
       continue;  // steps of the water quality, which nobody asks for
     } else if (std::int64_t* field = FindField(line, times)) {
       *field = ReadTime(line, TimeWord(line));
+      if (*field == 0 && IsStep(line)) {
+        draft.model.notes.push_back("[TIMES] " + line[0] + " " + line[1] + " 0: EPANET's default is used");
+      }
     } else {
       line.Fail(
           "unknown time; known are DURATION, HYDRAULIC TIMESTEP, PATTERN TIMESTEP, PATTERN START, REPORT "
           "TIMESTEP, REPORT START, RULE TIMESTEP, START CLOCKTIME, STATISTIC");
     }
   }
-  Complete(times);
+  Complete(times, draft.model.notes);
 }
 
 }  // namespace piperun::sim

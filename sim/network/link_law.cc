@@ -51,7 +51,7 @@ double CalcPositionalLoss(double opening_percent, double open_loss, const Curve&
 
 LinkLaws::LinkLaws(const HydraulicModel& model)
     : law_(model.options.law),
-      exponent_(law_ == HeadLossLaw::kHazenWilliams ? epanet::kHazenWilliamsFlowExponent : 2),
+      power_(law_ == HeadLossLaw::kHazenWilliams ? epanet::kHazenWilliamsFlowExponent - 1 : 1),
       least_slope_s_m2_(model.options.least_slope_s_m2) {
   for (const PipeLink& pipe : model.pipes) {
     pipes_.push_back(CalcPipeResistance(pipe, model.options));
@@ -69,12 +69,32 @@ LinkLaws::LinkLaws(const HydraulicModel& model)
   }
 }
 
-void LinkLaws::CalcLosses(const HydraulicState& state, std::vector<HeadLoss>& losses) const {
-  std::size_t link = 0;
-  for (std::size_t i = 0; i < pipes_.size(); ++i, ++link) {
-    const double q = state.flow_m3_s[link];
-    losses[link] = IsClosed(state.status[link]) ? CalcClosedLoss(q) : CalcPipeLoss(static_cast<int>(i), q);
+/// One loop per law, so that the law is asked for once, not at every pipe.
+void LinkLaws::CalcPipeLosses(const HydraulicState& state, std::vector<HeadLoss>& losses) const {
+  const auto calc_all = [&](auto calc_open) {
+    for (std::size_t i = 0; i < pipes_.size(); ++i) {
+      const double q = state.flow_m3_s[i];
+      losses[i] = IsClosed(state.status[i]) ? CalcClosedLoss(q) : calc_open(q, pipes_[i]);
+    }
+  };
+  const double least_slope = least_slope_s_m2_;
+  switch (law_) {
+    case HeadLossLaw::kHazenWilliams:
+      return calc_all([&](double q, const PipeResistance& pipe) {
+        return CalcPowerLoss(q, power_(std::abs(q)), epanet::kHazenWilliamsFlowExponent, pipe, least_slope);
+      });
+    case HeadLossLaw::kDarcyWeisbach:
+      return calc_all(CalcDarcyWeisbachLoss);
+    case HeadLossLaw::kChezyManning:
+      return calc_all([&](double q, const PipeResistance& pipe) {
+        return CalcPowerLoss(q, std::abs(q), 2, pipe, least_slope);
+      });
   }
+}
+
+void LinkLaws::CalcLosses(const HydraulicState& state, std::vector<HeadLoss>& losses) const {
+  CalcPipeLosses(state, losses);
+  std::size_t link = pipes_.size();
   for (std::size_t i = 0; i < pumps_.size(); ++i, ++link) {
     const double q = state.flow_m3_s[link], speed = state.setting[link];
     losses[link] = IsClosed(state.status[link]) || speed == 0 ? CalcClosedLoss(q)
@@ -84,11 +104,6 @@ void LinkLaws::CalcLosses(const HydraulicState& state, std::vector<HeadLoss>& lo
     losses[link] =
         CalcValveLoss(static_cast<int>(i), state.flow_m3_s[link], state.status[link], state.setting[link]);
   }
-}
-
-HeadLoss LinkLaws::CalcPipeLoss(int pipe, double flow_m3_s) const {
-  if (law_ == HeadLossLaw::kDarcyWeisbach) return CalcDarcyWeisbachLoss(flow_m3_s, pipes_[pipe]);
-  return CalcPowerLoss(flow_m3_s, pipes_[pipe], exponent_, least_slope_s_m2_);
 }
 
 /// Affinity: H(q, s) = s^2 H(q / s).

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "sim/network/fixed_power.h"
 #include "sim/network/head_loss.h"
 #include "sim/network/hydraulic_state.h"
 #include "sim/network/model.h"
@@ -19,7 +20,6 @@ class LinkLaws {
   /// Head loss of every link at the flows of a state.
   void CalcLosses(const HydraulicState& state, std::vector<HeadLoss>& losses) const;
 
-  HeadLoss CalcPipeLoss(int pipe, double flow_m3_s) const;
   HeadLoss CalcPumpLoss(int pump, double flow_m3_s, double speed) const;
   HeadLoss CalcValveLoss(int valve, double flow_m3_s, LinkStatus status, double setting) const;
 
@@ -46,9 +46,10 @@ class LinkLaws {
     Curve curve;
   };
   HeadLoss CalcControlledLoss(const Valve& valve, double flow_m3_s, double setting) const;
+  void CalcPipeLosses(const HydraulicState& state, std::vector<HeadLoss>& losses) const;
 
   HeadLossLaw law_;
-  double exponent_;
+  FixedPower power_;  ///< |q|^(n-1) of h = r |q|^(n-1) q
   double least_slope_s_m2_;
   std::vector<PipeResistance> pipes_;
   std::vector<double> first_pipe_flow_m3_s_;

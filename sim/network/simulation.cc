@@ -26,19 +26,25 @@ std::int64_t RoundSeconds(double seconds) {
 }  // namespace
 
 HydraulicSimulation::HydraulicSimulation(const HydraulicModel& model)
-    : model_(model), solver_(model), state_(solver_.MakeState()), next_report_s_(model.times.report_step_s) {
+    : model_(model),
+      solver_(model),
+      state_(solver_.MakeState()),
+      multipliers_(model.patterns.size()),
+      next_report_s_(model.times.report_step_s) {
   for (const TankNode& tank : model.tanks)
     volume_m3_.push_back(CalcTankVolume_m3(tank, tank.initial_level_m));
 }
 
-double HydraulicSimulation::Multiplier(int pattern) const {
-  if (pattern < 0) return 1;
-  const auto& multipliers = model_.patterns[pattern].multipliers;
+void HydraulicSimulation::FindMultipliers() {
   const std::int64_t period = (time_s_ + model_.times.pattern_start_s) / model_.times.pattern_step_s;
-  return multipliers[static_cast<std::size_t>(period) % multipliers.size()];
+  for (std::size_t i = 0; i < multipliers_.size(); ++i) {
+    const std::vector<double>& all = model_.patterns[i].multipliers;
+    multipliers_[i] = all[static_cast<std::size_t>(period) % all.size()];
+  }
 }
 
 void HydraulicSimulation::ImposeDemands() {
+  FindMultipliers();
   for (int i = 0; i < model_.junction_count(); ++i) {
     double demand = 0;
     for (const DemandCategory& category : model_.junctions[i].demands) {

@@ -47,7 +47,8 @@ class HydraulicSimulation {
   void ImposeDemands();
   void ImposeControls();
   bool IsDue(const SimpleControl& control) const;
-  double Multiplier(int pattern) const;
+  void FindMultipliers();
+  double Multiplier(int pattern) const { return pattern < 0 ? 1 : multipliers_[pattern]; }
 
   std::int64_t NextStep_s() const;
   void CutAtTanks(std::int64_t& step_s) const;
@@ -60,7 +61,8 @@ class HydraulicSimulation {
   HydraulicSolver solver_;
   HydraulicState state_;
   SolveReport report_;
-  std::vector<double> volume_m3_;  // per tank
+  std::vector<double> volume_m3_;    // per tank
+  std::vector<double> multipliers_;  // per pattern, at this instant
   std::int64_t time_s_ = 0;
   std::int64_t next_report_s_ = 0;
 };

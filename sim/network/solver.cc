@@ -28,6 +28,10 @@ std::vector<std::pair<int, int>> GatherEnds(const HydraulicModel& model) {
 
 HydraulicSolver::HydraulicSolver(const HydraulicModel& model)
     : model_(model),
+      junction_count_(model.junction_count()),
+      first_pump_(model.first_pump()),
+      first_valve_(model.first_valve()),
+      link_count_(model.link_count()),
       laws_(model),
       statuses_(model_, laws_),
       outlets_(FindOutlets(model)),
@@ -40,18 +44,10 @@ HydraulicSolver::HydraulicSolver(const HydraulicModel& model)
       outlet_conductance_m2_s_(outlets_.size()),
       excess_m3_s_(static_cast<std::size_t>(model.node_count())) {}
 
-/// Adds a relaxed step to a flow.
-void HydraulicSolver::FlowChange::Apply(double step_m3_s, double& flow_m3_s) {
-  flow_m3_s += step_m3_s;
-  total_m3_s += std::abs(flow_m3_s);
-  changed_m3_s += std::abs(step_m3_s);
-  greatest_m3_s = std::max(greatest_m3_s, std::abs(step_m3_s));
-}
-
 /// A pump of constant power has no law for flow backwards: it is halved instead.
 double HydraulicSolver::LimitStep(int link, double flow_m3_s, double step_m3_s) const {
-  const int pump = link - model_.first_pump();
-  const bool is_power_pump = pump >= 0 && link < model_.first_valve() && laws_.IsConstantPower(pump);
+  const int pump = link - first_pump_;
+  const bool is_power_pump = pump >= 0 && link < first_valve_ && laws_.IsConstantPower(pump);
   return is_power_pump && -step_m3_s > flow_m3_s ? -flow_m3_s / 2 : step_m3_s;
 }
 
@@ -70,21 +66,21 @@ void HydraulicSolver::UpdateOutletFlow(HydraulicState& state, std::size_t i, dou
 
 HydraulicSolver::FlowChange HydraulicSolver::UpdateFlows(HydraulicState& state, double relaxation) {
   FlowChange change;
-  for (int link = 0; link < model_.link_count(); ++link) {
+  for (int link = 0; link < first_pump_; ++link) {
+    change.Apply(CalcStep_m3_s(state, link, relaxation), state.flow_m3_s[link]);
+  }
+  for (int link = first_pump_; link < link_count_; ++link) {
     double& flow = state.flow_m3_s[link];
-    double step =
-        relaxation * (predicted_m3_s_[link] + conductance_m2_s_[link] * system_.Difference(link) - flow);
-    if (link >= model_.first_pump()) step = LimitStep(link, flow, step);
-    change.Apply(step, flow);
+    change.Apply(LimitStep(link, flow, CalcStep_m3_s(state, link, relaxation)), flow);
   }
   for (std::size_t i = 0; i < outlets_.size(); ++i) UpdateOutletFlow(state, i, relaxation, change);
-  for (int i = 0; i < model_.junction_count(); ++i) state.head_m[i] += system_.Solution(i);
+  for (int i = 0; i < junction_count_; ++i) state.head_m[i] += system_.Solution(i);
   return change;
 }
 
 /// An active control valve whose setting makes the equations contradict each other is opened for good.
 bool HydraulicSolver::HandOverValve(HydraulicState& state) const {
-  for (int link = model_.first_valve(); link < model_.link_count(); ++link) {
+  for (int link = first_valve_; link < link_count_; ++link) {
     const auto& [from, to] = ends_[link];
     if (from != system_.bad_junction() && to != system_.bad_junction()) continue;
     if (!IsControlled(state, link) || state.status[link] != LinkStatus::kActive) return false;
@@ -139,7 +135,7 @@ void HydraulicSolver::FindHeadError(const HydraulicState& state, SolveReport& re
   laws_.CalcLosses(state, losses_);
   report.max_head_error_m = 0;
   report.worst_link = -1;
-  for (int link = 0; link < model_.link_count(); ++link) {
+  for (int link = 0; link < link_count_; ++link) {
     if (IsClosed(state.status[link]) || IsControlled(state, link)) continue;
     const double drop = state.head_m[ends_[link].first] - state.head_m[ends_[link].second];
     const double error = std::abs(drop - losses_[link].loss_m);
@@ -158,7 +154,7 @@ void HydraulicSolver::FindImbalance(const HydraulicState& state, SolveReport& re
   }
   report.max_imbalance_m3_s = 0;
   report.worst_node = -1;
-  for (int i = 0; i < model_.junction_count(); ++i) {
+  for (int i = 0; i < junction_count_; ++i) {
     const double imbalance = std::abs(excess_m3_s_[i] - state.Outflow_m3_s(i));
     if (!(imbalance <= report.max_imbalance_m3_s)) {
       report.max_imbalance_m3_s = imbalance;
@@ -176,7 +172,7 @@ void HydraulicSolver::SettleFlows(HydraulicState& state) {
   }
   if (!HasPinned(state)) return;
   CalcExcess(state);
-  for (int link = model_.first_valve(); link < model_.link_count(); ++link) {
+  for (int link = first_valve_; link < link_count_; ++link) {
     if (IsPinned(state, link)) state.flow_m3_s[link] = PinnedFlow_m3_s(link);
   }
 }
@@ -188,11 +184,11 @@ void HydraulicSolver::Balance(HydraulicState& state, SolveReport& report) {
     SettleFlows(state);
     FindImbalance(state, report);
     if (report.max_imbalance_m3_s <= kBalanced_m3_s || i == kBalanceTrials) return;
-    for (int node = 0; node < model_.junction_count(); ++node) {
+    for (int node = 0; node < junction_count_; ++node) {
       system_.SetRight(node, excess_m3_s_[node] - state.Outflow_m3_s(node));
     }
     system_.SolveAgain();
-    for (int link = 0; link < model_.link_count(); ++link) {
+    for (int link = 0; link < link_count_; ++link) {
       if (!IsClosed(state.status[link]))
         state.flow_m3_s[link] += conductance_m2_s_[link] * system_.Difference(link);
     }
@@ -205,7 +201,7 @@ void HydraulicSolver::Balance(HydraulicState& state, SolveReport& report) {
 
 void HydraulicSolver::CalcInflows(HydraulicState& state) const {
   std::fill(state.inflow_m3_s.begin(), state.inflow_m3_s.end(), 0.0);
-  const int n = model_.junction_count();
+  const int n = junction_count_;
   for (std::size_t link = 0; link < ends_.size(); ++link) {
     if (IsClosed(state.status[link])) continue;
     if (ends_[link].first >= n) state.inflow_m3_s[ends_[link].first - n] -= state.flow_m3_s[link];

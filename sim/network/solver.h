@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include "sim/network/head_system.h"
@@ -49,16 +52,37 @@ class HydraulicSolver {
     double changed_m3_s = 0;
     double total_m3_s = 0;
     double greatest_m3_s = 0;
-    void Apply(double step_m3_s, double& flow_m3_s);
+    /// Adds a relaxed step to a flow.
+    void Apply(double step_m3_s, double& flow_m3_s) {
+      flow_m3_s += step_m3_s;
+      total_m3_s += std::abs(flow_m3_s);
+      changed_m3_s += std::abs(step_m3_s);
+      greatest_m3_s = std::max(greatest_m3_s, std::abs(step_m3_s));
+    }
   };
 
   void Assemble(const HydraulicState& state);
   void AssembleLinks(const HydraulicState& state);
-  void AssembleLawful(const HydraulicState& state, int link);
   void AssembleFlowControl(const HydraulicState& state, int link);
   void AssemblePinned(const HydraulicState& state, int link);
+  /// A link that follows its law: q = q0 + (drop - h(q0)) / h'(q0) if no head changes.
+  void AssembleLawful(const HydraulicState& state, int link) {
+    const double conductance = 1 / losses_[link].slope_s_m2;
+    const double drop = state.head_m[ends_[link].first] - state.head_m[ends_[link].second];
+    PredictLink(link, state.flow_m3_s[link] + conductance * (drop - losses_[link].loss_m), conductance);
+  }
   void AssembleOutlets(const HydraulicState& state);
-  void PredictLink(int link, double flow_m3_s, double conductance);
+  /// How far a link's flow has to go after the last solution for the heads.
+  double CalcStep_m3_s(const HydraulicState& state, int link, double relaxation) const {
+    const double goal = predicted_m3_s_[link] + conductance_m2_s_[link] * system_.Difference(link);
+    return relaxation * (goal - state.flow_m3_s[link]);
+  }
+  /// A link's part in the equations: its flow if no head changed, q - h/h' + dH/h', and how it follows heads.
+  void PredictLink(int link, double flow_m3_s, double conductance) {
+    predicted_m3_s_[link] = flow_m3_s;
+    conductance_m2_s_[link] = conductance;
+    system_.AddLink(link, conductance, flow_m3_s);
+  }
   void CalcExcess(const HydraulicState& state);
   bool IsControlled(const HydraulicState& state, int link) const;
   bool IsPinned(const HydraulicState& state, int link) const;
@@ -81,6 +105,7 @@ class HydraulicSolver {
   void CalcInflows(HydraulicState& state) const;
 
   const HydraulicModel& model_;
+  const int junction_count_, first_pump_, first_valve_, link_count_;  // the model's, asked for too often
   LinkLaws laws_;
   StatusRules statuses_;
   std::vector<Outlet> outlets_;

@@ -21,64 +21,49 @@ bool HydraulicSolver::IsIdle(const Outlet& outlet, const HydraulicState& state) 
 }
 
 bool HydraulicSolver::IsControlled(const HydraulicState& state, int link) const {
-  const int valve = link - model_.first_valve();
+  const int valve = link - first_valve_;
   if (valve < 0 || std::isnan(state.setting[link])) return false;
   const ValveKind kind = model_.valves[valve].kind;
   return PinsPressure(kind) || kind == ValveKind::kFlowControl;
 }
 
 bool HydraulicSolver::IsPinned(const HydraulicState& state, int link) const {
-  const int valve = link - model_.first_valve();
+  const int valve = link - first_valve_;
   return valve >= 0 && PinsPressure(model_.valves[valve].kind) && !std::isnan(state.setting[link]) &&
          state.status[link] == LinkStatus::kActive;
 }
 
 bool HydraulicSolver::HasPinned(const HydraulicState& state) const {
-  for (int link = model_.first_valve(); link < model_.link_count(); ++link) {
+  for (int link = first_valve_; link < link_count_; ++link) {
     if (IsPinned(state, link)) return true;
   }
   return false;
-}
-
-/// A link's part in the equations: its flow if no head changed, q - h/h' + dH/h', and how it follows heads.
-void HydraulicSolver::PredictLink(int link, double flow_m3_s, double conductance) {
-  predicted_m3_s_[link] = flow_m3_s;
-  conductance_m2_s_[link] = conductance;
-  system_.AddLink(link, conductance);
-  system_.AddFlow(link, flow_m3_s);
 }
 
 /// What comes to each node by all links but pinned valves, minus what leaves it: what a pinned valve must
 /// carry.
 void HydraulicSolver::CalcExcess(const HydraulicState& state) {
   std::fill(excess_m3_s_.begin(), excess_m3_s_.end(), 0.0);
-  for (int link = 0; link < model_.link_count(); ++link) {
+  for (int link = 0; link < link_count_; ++link) {
     if (IsPinned(state, link)) continue;
     const bool passes_setting = IsControlled(state, link) && state.status[link] == LinkStatus::kActive;
     const double flow = passes_setting ? state.setting[link] : state.flow_m3_s[link];
     excess_m3_s_[ends_[link].first] -= flow;
     excess_m3_s_[ends_[link].second] += flow;
   }
-  for (int i = 0; i < model_.junction_count(); ++i) excess_m3_s_[i] -= state.Outflow_m3_s(i);
+  for (int i = 0; i < junction_count_; ++i) excess_m3_s_[i] -= state.Outflow_m3_s(i);
 }
 
 void HydraulicSolver::Assemble(const HydraulicState& state) {
   laws_.CalcLosses(state, losses_);
   system_.Clear();
   if (HasPinned(state)) CalcExcess(state);
-  for (int i = 0; i < model_.junction_count(); ++i) {
+  for (int i = 0; i < junction_count_; ++i) {
     if (!model_.options.pressure_driven || state.demand_m3_s[i] <= 0)
       system_.AddRight(i, -state.delivered_m3_s[i]);
   }
   AssembleOutlets(state);
   AssembleLinks(state);
-}
-
-/// A link that follows its law: q = q0 + (drop - h(q0)) / h'(q0) if no head changes.
-void HydraulicSolver::AssembleLawful(const HydraulicState& state, int link) {
-  const double conductance = 1 / losses_[link].slope_s_m2;
-  const double drop = state.head_m[ends_[link].first] - state.head_m[ends_[link].second];
-  PredictLink(link, state.flow_m3_s[link] + conductance * (drop - losses_[link].loss_m), conductance);
 }
 
 /// An active FCV passes its setting whatever the heads.
@@ -89,8 +74,8 @@ void HydraulicSolver::AssembleFlowControl(const HydraulicState& state, int link)
 }
 
 void HydraulicSolver::AssembleLinks(const HydraulicState& state) {
-  for (int link = 0; link < model_.first_valve(); ++link) AssembleLawful(state, link);
-  for (int link = model_.first_valve(); link < model_.link_count(); ++link) {
+  for (int link = 0; link < first_valve_; ++link) AssembleLawful(state, link);
+  for (int link = first_valve_; link < link_count_; ++link) {
     if (IsPinned(state, link)) {
       AssemblePinned(state, link);
     } else if (IsControlled(state, link) && state.status[link] == LinkStatus::kActive) {
@@ -103,7 +88,7 @@ void HydraulicSolver::AssembleLinks(const HydraulicState& state) {
 
 /// What a pinned valve must pass, given the excess of its nodes.
 double HydraulicSolver::PinnedFlow_m3_s(int link) const {
-  const bool reduces = model_.valves[link - model_.first_valve()].kind == ValveKind::kPressureReducing;
+  const bool reduces = model_.valves[link - first_valve_].kind == ValveKind::kPressureReducing;
   return reduces ? -excess_m3_s_[ends_[link].second] : excess_m3_s_[ends_[link].first];
 }
 
@@ -111,7 +96,7 @@ double HydraulicSolver::PinnedFlow_m3_s(int link) const {
 /// spare.
 void HydraulicSolver::AssemblePinned(const HydraulicState& state, int link) {
   const auto& [from, to] = ends_[link];
-  const bool reduces = model_.valves[link - model_.first_valve()].kind == ValveKind::kPressureReducing;
+  const bool reduces = model_.valves[link - first_valve_].kind == ValveKind::kPressureReducing;
   const int pinned = reduces ? to : from, other = reduces ? from : to;
   const double goal_m = model_.junctions[pinned].elevation_m + state.setting[link];
   const double through = PinnedFlow_m3_s(link);
@@ -120,7 +105,7 @@ void HydraulicSolver::AssemblePinned(const HydraulicState& state, int link) {
   system_.AddDiagonal(pinned, epanet::kPinWeight_m2_s);
   system_.AddRight(pinned, epanet::kPinWeight_m2_s * (goal_m - state.head_m[pinned]));
   if (through > 0) system_.AddRight(other, reduces ? -through : through);
-  if (!reduces) system_.AddLink(link, 1 / epanet::kClosedSlope_s_m2);  // keeps the far side supported
+  if (!reduces) system_.AddLink(link, 1 / epanet::kClosedSlope_s_m2, 0);  // keeps the far side supported
 }
 
 void HydraulicSolver::AssembleOutlets(const HydraulicState& state) {

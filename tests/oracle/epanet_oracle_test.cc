@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -119,6 +120,26 @@ class Comparer {
   Comparison result_;
 };
 
+/// Mean time of a first solution from a cold start, topology analysed, as solve.mjs times the engine's.
+double TimeFirstSolution_us(const HydraulicModel& model) {
+  constexpr int kRuns = 200;
+  HydraulicSimulation simulation(model);
+  const HydraulicState start = simulation.state();
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < kRuns; ++i) {
+    simulation.state() = start;
+    simulation.Solve();
+  }
+  const std::chrono::duration<double, std::micro> elapsed = std::chrono::steady_clock::now() - begin;
+  return elapsed.count() / kRuns;
+}
+
+void PrintTimes(const std::string& name, const HydraulicModel& model, double engine_us) {
+  const double ours_us = TimeFirstSolution_us(model);
+  std::printf("%-22s %6d %10.1f %14.1f %7.2f\n", name.c_str(), model.node_count(), ours_us, engine_us,
+              engine_us / ours_us);
+}
+
 void Print(const std::string& name, const Comparison& c) {
   static bool headed = false;
   if (!headed) {
@@ -165,6 +186,20 @@ TEST(EpanetOracle, HeadsFlowsEventsAndIterationsAgreeWithTheEngine) {
     EXPECT_LE(c.more_iterations, kMoreIterations);
     EXPECT_EQ(c.status_differences, 0);
     EXPECT_EQ(c.not_converged, 0);
+  }
+}
+
+/// Asserts nothing: times depend on the machine. The engine here is WebAssembly under node, slower than a
+/// native build of it.
+TEST(EpanetOracle, FirstSolutionsAreTimedBesideTheEngine) {
+  std::printf("%-22s %6s %10s %14s %7s\n", "first solution, 1e-5", "nodes", "ours us", "EPANET WASM us",
+              "ratio");
+  for (const fs::path& path : FindNetworks()) {
+    const nlohmann::json engine =
+        nlohmann::json::parse(ReadFile(result_folder / (path.stem().string() + ".json")));
+    HydraulicModel model = ReadInp(ReadFile(path), path.filename().string());
+    model.options.accuracy = 1e-5;
+    PrintTimes(path.stem().string(), model, engine["first_step_us"].get<double>());
   }
 }
 

@@ -238,6 +238,12 @@ TEST(InpReader, CoordinatesOfNodesThatAreGoneAreNoted) {
   EXPECT_TRUE(HasNote(Read(SmallInp("[COORDINATES]\nghost 1 2\n[VERTICES]\nghost 1 2\n")), "unknown"));
 }
 
+TEST(InpReader, StepsOfZeroAndAReportThatNeverBeginsAreNoted) {
+  EXPECT_TRUE(HasNote(Read(SmallInp("[TIMES]\nHydraulic Timestep 0\n")), "default"));
+  EXPECT_TRUE(HasNote(Read(SmallInp("[TIMES]\nDuration 2\nReport Start 3\n")), "REPORT START"));
+  EXPECT_FALSE(HasNote(Read(SmallInp("[TIMES]\nDuration 0\nReport Start 0\n")), "[TIMES]"));
+}
+
 TEST(InpReader, AFileWithoutEndIsNoted) {
   std::string text = SmallInp();
   text.resize(text.find("[END]"));
@@ -332,6 +338,24 @@ INSTANTIATE_TEST_SUITE_P(
                 "net.inp:9", "[CONTROLS]", "check valve"},
         BadCase{"RuleOutOfPlace", SmallInp("[RULES]\nRULE r\nTHEN PIPE P STATUS IS OPEN\n"), "net.inp:9",
                 "[RULES]", "out of place"},
+        BadCase{"RuleWithoutAction", SmallInp("[RULES]\nRULE r\nIF NODE J PRESSURE > 3\n"), "net.inp:8",
+                "[RULES]", "no THEN"},
+        BadCase{"RuleCutByTheNext",
+                SmallInp("[RULES]\nRULE r\nIF NODE J PRESSURE > 3\nRULE s\nIF NODE J PRESSURE > 3\n"
+                         "THEN PIPE P STATUS IS OPEN\n"),
+                "net.inp:8", "[RULES]", "'r' has no THEN"},
+        BadCase{"ControlOfAnUnknownLink", SmallInp("[CONTROLS]\nLINK Z OPEN AT TIME 3\n"), "net.inp:8",
+                "[CONTROLS]", "no link 'Z'"},
+        BadCase{"CoordinateNoNumber", SmallInp("[COORDINATES]\nJ x 3\n"), "net.inp:8", "[COORDINATES] 'J'",
+                "must be a number"},
+        BadCase{"LengthBeyondDoubles", SmallInp("Q R J 1e400 100 100\n"), "net.inp:7", "[PIPES] 'Q'",
+                "must be a number"},
+        BadCase{"AccuracyOutOfRange", SmallInp("", "Accuracy 5\n"), "net.inp:8", "[OPTIONS] 'Accuracy'",
+                "(0, 0.1]"},
+        BadCase{"TimeNoTime", SmallInp("[TIMES]\nDuration soon\n"), "net.inp:8", "[TIMES] 'Duration'",
+                "'soon'"},
+        BadCase{"EmitterNegative", SmallInp("[EMITTERS]\nJ -1\n"), "net.inp:8", "[EMITTERS] 'J'", ">= 0"},
+        BadCase{"Utf16", std::string("\xFF\xFE[\0J\0", 6), "net.inp:1", "", "byte 0"},
         BadCase{"LeakOfAPump", SmallInp("[PUMPS]\nu R J POWER 1\n[LEAKAGE]\nu 1 0\n"), "net.inp:10",
                 "[LEAKAGE] 'u'", "not a pipe"}),
     [](const auto& info) { return info.param.name; });

@@ -4,19 +4,26 @@
 #include <fstream>
 #include <optional>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 
 #include "sim/network/inp_reader.h"
 
 namespace piperun::testing {
 
-/// The repository's root, found upwards from this very file.
+/// The repository's root, found upwards from this very file, or, where the compiler was given a relative path
+/// to it (ccache does that), from the working directory.
 inline std::filesystem::path RepositoryRoot() {
-  return std::filesystem::path(__FILE__).parent_path().parent_path().parent_path();
+  namespace fs = std::filesystem;
+  const fs::path file = __FILE__;
+  fs::path folder = file.is_absolute() ? file.parent_path() : fs::current_path();
+  while (!fs::exists(folder / "assets/networks") && folder.has_relative_path()) folder = folder.parent_path();
+  return folder;
 }
 
 inline std::string ReadText(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw std::runtime_error("cannot read " + path.string());
   std::stringstream text;
   text << stream.rdbuf();
   return text.str();

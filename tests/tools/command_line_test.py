@@ -3,9 +3,13 @@
 Usage: command_line_test.py PATH_OF_PIPERUN
 """
 
+import csv
+import io
 import json
+import math
 import os
 import pathlib
+import random
 import resource
 import signal
 import subprocess
@@ -35,6 +39,30 @@ sensors:
 estimators:
   ekf: {kind: quaternion_ekf}
 """
+
+NETWORK = """\
+[JUNCTIONS]
+ A 10 4 day
+ B 12 6 day
+ C 12 0
+[RESERVOIRS]
+ R 50
+[PIPES]
+;id from to length bore C
+ P R A 200 150 130
+ Q B A 50 80 130 0 Open
+ S B C 50 80 130 0 Closed
+[OPTIONS]
+Units LPS
+Accuracy 0.00001
+[PATTERNS]
+day 1 0.5 1
+[TIMES]
+Duration 3:00
+[END]
+"""
+
+TOWN = str(pathlib.Path(__file__).resolve().parents[2] / "assets/networks/town.inp")
 
 
 def piperun(*arguments, **options):
@@ -97,7 +125,7 @@ class CommandLine(unittest.TestCase):
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
 
     def test_every_command_has_help(self):
-        for command in ([], ["run"], ["check"], ["estimate"], ["scenario"], ["scenario", "new"]):
+        for command in ([], ["run"], ["check"], ["estimate"], ["scenario"], ["scenario", "new"], ["network"]):
             done = piperun(*command, "--help")
             self.assertEqual(done.returncode, 0)
             self.assertIn("Usage", done.stdout)
@@ -229,6 +257,119 @@ class CommandLine(unittest.TestCase):
         self.assertFalse((self.folder / "replayed").exists())
         done = piperun("estimate", self.out, "--out", self.folder / "replayed", "--estimators", "quaternion_efk")
         self.assertIn("did you mean 'quaternion_ekf'?", done.stderr)
+
+    # ---- networks
+
+    def network(self, *arguments, text=NETWORK, name="net.inp"):
+        path = self.folder / name
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return piperun("network", path, *arguments)
+
+    def test_network_json_has_exactly_the_fields_promised(self):
+        done = self.network("--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        result = json.loads(done.stdout)
+        self.assertEqual(list(result), ["converged", "iterations", "steps"])
+        self.assertIs(result["converged"], True)
+        step, = result["steps"]
+        self.assertEqual(list(step), ["time_s", "nodes", "links"])
+        self.assertEqual(step["time_s"], 0)
+        self.assertEqual(sorted(step["nodes"]), ["A", "B", "C", "R"])
+        for node in step["nodes"].values():
+            self.assertEqual(list(node), ["head_m", "demand_m3_s"])
+        for link in step["links"].values():
+            self.assertEqual(list(link), ["flow_m3_s", "velocity_m_s", "status"])
+        self.assertEqual({k: v["status"] for k, v in step["links"].items()}, {"P": "open", "Q": "open", "S": "closed"})
+
+    def test_network_numbers_are_those_of_continuity_and_hazen_williams(self):
+        step = json.loads(self.network("--json").stdout)["steps"][0]
+        # a litre of EPANET is a cubic foot / 28.317; A takes 4 L/s, B 6 L/s, C is cut off
+        litre = 0.3048 ** 3 / 28.317
+        self.assertAlmostEqual(step["links"]["P"]["flow_m3_s"], 10 * litre, 12)
+        self.assertAlmostEqual(step["links"]["Q"]["flow_m3_s"], -6 * litre, 12)
+        self.assertEqual(step["links"]["S"]["flow_m3_s"], 0)
+        self.assertAlmostEqual(step["nodes"]["R"]["demand_m3_s"], -10 * litre, 12)
+        self.assertAlmostEqual(step["links"]["Q"]["velocity_m_s"], 6 * litre / (math.pi / 4 * 0.08 ** 2), 9)
+        loss = 10.667 * 200 * 0.01 ** 1.852 / (130 ** 1.852 * 0.15 ** 4.871)
+        self.assertAlmostEqual(step["nodes"]["R"]["head_m"] - step["nodes"]["A"]["head_m"], loss, 3)
+
+    def test_network_extended_tells_every_reporting_step(self):
+        steps = json.loads(self.network("--json", "--extended").stdout)["steps"]
+        self.assertEqual([step["time_s"] for step in steps], [0, 3600, 7200, 10800])
+        flows = [step["links"]["P"]["flow_m3_s"] for step in steps]
+        self.assertAlmostEqual(flows[1] / flows[0], 0.5, 9)
+        self.assertIn("The period, 4 instants", self.network("--extended").stdout)
+
+    def test_network_csv_is_a_table(self):
+        rows = list(csv.DictReader(io.StringIO(self.network("--csv", "--extended").stdout)))
+        self.assertEqual(len(rows), 4 * (4 + 3))
+        self.assertTrue(all(None not in row and None not in row.values() for row in rows))
+        row, = (r for r in rows if r["time_s"] == "3600" and r["id"] == "Q")
+        self.assertEqual((row["element"], row["kind"], row["from"], row["to"], row["head_m"]),
+                         ("link", "pipe", "B", "A", ""))
+
+    def test_network_tells_what_a_ball_passes_and_where_water_takes_it(self):
+        done = self.network("--json", "--ball-mm", 77, "--from", "R", "--to", "B")
+        self.assertEqual(done.returncode, 1, "77 mm is more than 0.95 of 80 mm")
+        self.assertIn("no way from 'R' to 'B'", done.stderr)
+        self.assertEqual(json.loads(done.stdout)["ball"]["links"],
+                         {"P": "passes", "Q": "too narrow", "S": "closed"})
+        done = self.network("--json", "--ball-mm", 76, "--from", "R", "--to", "B")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        routes = json.loads(done.stdout)["routes"]
+        self.assertEqual([p["node"] for p in routes["fastest"]], ["R", "A", "B"])
+        litre = 0.3048 ** 3 / 28.317
+        time_s = math.pi / 4 * (200 * 0.15 ** 2 / (10 * litre) + 50 * 0.08 ** 2 / (6 * litre))
+        self.assertAlmostEqual(routes["fastest"][-1]["time_s"], time_s, 6)
+        self.assertEqual(list(routes["reachable"]), ["R", "A", "B"])
+        self.assertIn("it ends at 'B': no water flows on", self.network("--from", "R").stdout)
+
+    def test_network_accuracy_overrides_the_file(self):
+        loose, tight = (json.loads(piperun("network", TOWN, "--json", "--accuracy", a).stdout)["iterations"]
+                        for a in (0.1, 1e-8))
+        self.assertLess(loose, tight)
+
+    def test_network_that_does_not_converge_is_told_with_its_worst_link(self):
+        text = pathlib.Path(TOWN).read_text().replace("Trials    100", "Trials 2").replace("Continue 10", "Stop")
+        done = self.network("--json", text=text)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"at 0 s: did not converge in 2 iterations.*link '\w+' is off by [0-9.e-]+ m")
+        self.assertIs(json.loads(done.stdout)["converged"], False)
+
+    def test_network_long_tables_are_cut_and_say_so(self):
+        self.assertRegex(piperun("network", TOWN).stdout, r"\.\.\. and 83 more nodes; --all prints them")
+        self.assertNotIn("--all", piperun("network", TOWN, "--all").stdout)
+        self.assertEqual(piperun("network", TOWN, "--quiet").stdout, "")
+
+    def test_network_bad_input(self):
+        noise = self.folder / "noise.inp"
+        with open(noise, "wb") as file:
+            file.write(random.Random(1).randbytes(1 << 20) * 100)
+        cases = [(("network", noise), ["noise.inp", "100 MiB"]),
+                 (("network", self.folder), ["folder"]),
+                 (("network", self.folder / "none.inp"), ["none.inp", "cannot read"]),
+                 (("network", TOWN, "--accuracy", "0"), ["--accuracy", "(0, 0.1]"]),
+                 (("network", TOWN, "--ball-mm", "big"), ["--ball-mm", "'big'"]),
+                 (("network", TOWN, "--from", "L0O"), ["--from", "did you mean 'L00'?"]),
+                 (("network", TOWN, "--to", "L00"), ["--from"]),
+                 (("network", TOWN, "--json", "--csv"), ["--csv"])]
+        for arguments, parts in cases:
+            begin = time.monotonic()
+            done = piperun(*arguments)
+            self.assertEqual(done.returncode, 2, (arguments, done.stderr))
+            self.assertLess(time.monotonic() - begin, 5, arguments)
+            for part in parts:
+                self.assertIn(part, done.stderr)
+        for old, new, parts in [(" P R A", " P R X", ["net.inp:9", "[PIPES] 'P'", "no node 'X'"]),
+                                ("200 150", "0 150", ["net.inp:9", "length"]),
+                                ("200 150", "200 0", ["net.inp:9", "diameter"]),
+                                (" Q B A", " P B A", ["net.inp:10", "used twice"]),
+                                ("Units LPS", "Units FURLONGS", ["net.inp:13", "FURLONGS"])]:
+            self.assertIn(old, NETWORK)
+            done = self.network(text=NETWORK.replace(old, new))
+            self.assertEqual(done.returncode, 2)
+            for part in parts:
+                self.assertIn(part, done.stderr)
 
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ extern std::atomic<bool> stop_requested;
 void AddRunCommand(CLI::App& app, Display& display, int& exit_code);
 void AddCheckCommand(CLI::App& app, Display& display, int& exit_code);
 void AddEstimateCommand(CLI::App& app, Display& display, int& exit_code);
+void AddNetworkCommand(CLI::App& app, Display& display, int& exit_code);
 void AddReproduceCommand(CLI::App& app, Display& display, int& exit_code);
 void AddScenarioCommand(CLI::App& app, Display& display, int& exit_code);
 

@@ -42,6 +42,7 @@ int RunApp(int argc, char** argv) {
   AddRunCommand(app, display, exit_code);
   AddCheckCommand(app, display, exit_code);
   AddEstimateCommand(app, display, exit_code);
+  AddNetworkCommand(app, display, exit_code);
   AddReproduceCommand(app, display, exit_code);
   AddScenarioCommand(app, display, exit_code);
   app.footer("Exit codes: 0 ok, 1 the run or a check failed, 2 wrong usage or input, 130 interrupted.");

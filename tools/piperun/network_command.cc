@@ -1,0 +1,153 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "base/check.h"
+#include "base/number.h"
+#include "base/params.h"
+#include "scenarios/nearest_name.h"
+#include "scenarios/network_report.h"
+#include "scenarios/output_file.h"
+#include "sim/network/inp_reader.h"
+#include "tools/piperun/ball_way_text.h"
+#include "tools/piperun/command.h"
+#include "tools/piperun/network_text.h"
+#include "tools/piperun/progress_bar.h"
+
+namespace piperun::tools {
+namespace {
+
+struct NetworkArguments {
+  std::string file;
+  bool extended = false;
+  bool csv = false;
+  bool all = false;
+  std::string accuracy, ball_mm, from, to;
+};
+
+double ReadOption(const std::string& text, const char* option, const Range& range) {
+  const auto value = ParseNumber(text);
+  if (!value) throw InputError("'" + text + "' is not a number", option);
+  if (!range.Contains(*value)) throw InputError("is " + text + "; allowed: " + range.Text(), option);
+  return *value;
+}
+
+int FindNode(const sim::HydraulicModel& model, const std::string& id, const char* option) {
+  std::vector<std::string> ids;
+  for (int i = 0; i < model.node_count(); ++i) {
+    if (model.NodeId(i) == id) return i;
+    ids.push_back(model.NodeId(i));
+  }
+  const auto nearest = scenarios::FindNearestName(id, ids);
+  throw InputError("there is no node '" + id + "'" + (nearest ? "; did you mean '" + *nearest + "'?" : ""),
+                   option);
+}
+
+scenarios::BallQuestion ReadQuestion(const sim::HydraulicModel& model, const NetworkArguments& arguments) {
+  scenarios::BallQuestion question;
+  question.ask_passage = !arguments.ball_mm.empty();
+  if (question.ask_passage) {
+    question.ball_diameter_m = 1e-3 * ReadOption(arguments.ball_mm, "--ball-mm", {.min = 1, .max = 5000});
+  }
+  if (!arguments.from.empty()) question.from = FindNode(model, arguments.from, "--from");
+  if (!arguments.to.empty()) question.to = FindNode(model, arguments.to, "--to");
+  return question;
+}
+
+sim::HydraulicModel LoadNetwork(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    throw InputError("this is a folder; give an EPANET input file", "", path);
+  }
+  const auto size = std::filesystem::file_size(path, ignored);
+  if (!ignored && size > sim::kMaxInpBytes) sim::RefuseSize(size, path);
+  return sim::ReadInp(scenarios::ReadTextFile(path), path);
+}
+
+scenarios::NetworkSolution Solve(const sim::HydraulicModel& model, const NetworkArguments& arguments,
+                                 const Display& display) {
+  ProgressBar bar(model.name, !display.quiet);
+  scenarios::NetworkOptions options;
+  options.extended = arguments.extended;
+  options.stop = &stop_requested;
+  const auto duration = static_cast<double>(std::max<std::int64_t>(model.times.duration_s, 1));
+  options.progress = [&](std::int64_t time_s) {
+    bar.Update(static_cast<double>(time_s) / duration, fmt::format("{} h", time_s / 3600));
+  };
+  return scenarios::SolveNetwork(model, options);
+}
+
+void Print(const sim::HydraulicModel& model, const scenarios::NetworkSolution& solution,
+           const scenarios::BallQuestion& question, const NetworkArguments& arguments,
+           const Display& display) {
+  if (display.json || arguments.csv) {
+    if (!display.quiet) {
+      for (const std::string& note : model.notes) fmt::print(stderr, "piperun: note: {}\n", note);
+    }
+    fmt::print("{}",
+               display.json ? WriteNetworkJson(model, solution, question) : WriteNetworkCsv(model, solution));
+  } else if (!display.quiet) {
+    fmt::print("{}{}", DescribeNetwork(model, solution, arguments.all),
+               DescribeBallWays(model, solution.steps.front().state, question, arguments.all));
+  }
+}
+
+/// False when --to asks for a node the water does not come by.
+bool IsReachable(const sim::HydraulicModel& model, const scenarios::NetworkSolution& solution,
+                 const scenarios::BallQuestion& question) {
+  if (!question.to) return true;
+  const sim::WaterWays ways(model, solution.steps.front().state, question.ball_diameter_m);
+  return ways.FindFastest(*question.from, *question.to).has_value();
+}
+
+int ReportNetwork(sim::HydraulicModel model, const NetworkArguments& arguments, const Display& display) {
+  if (!arguments.accuracy.empty()) {
+    model.options.accuracy =
+        ReadOption(arguments.accuracy, "--accuracy", {.min = 0, .max = 0.1, .min_open = true});
+  }
+  if (arguments.csv && display.json) throw InputError("choose one of --csv and --json", "--csv");
+  const scenarios::BallQuestion question = ReadQuestion(model, arguments);
+  const scenarios::NetworkSolution solution = Solve(model, arguments, display);
+  Print(model, solution, question, arguments, display);
+  if (!solution.converged()) {
+    fmt::print(stderr, "piperun: {}: {}\n", model.name, solution.problem);
+    return kFailed;
+  }
+  if (!IsReachable(model, solution, question)) {
+    fmt::print(stderr, "piperun: {}: no way from '{}' to '{}'\n", model.name, arguments.from, arguments.to);
+    return kFailed;
+  }
+  return kOk;
+}
+
+constexpr const char* kFooter =
+    "CSV columns: time_s, element (node or link), id, kind, then for nodes elevation_m, head_m, pressure_m,\n"
+    "demand_m3_s, for links from, to, flow_m3_s, velocity_m_s, head_loss_m, status.\n"
+    "demand_m3_s is what leaves the pipes: customers, emitters and leaks of a junction; what flows into a\n"
+    "reservoir or tank, negative while it feeds the network. Flow counts from -> to.\n"
+    "Ways and passage are those of the first instant told of.";
+
+}  // namespace
+
+void AddNetworkCommand(CLI::App& app, Display& display, int& exit_code) {
+  auto arguments = std::make_shared<NetworkArguments>();
+  CLI::App* command = app.add_subcommand("network", "Solve an EPANET network: heads, flows, ways of a ball");
+  command->add_option("FILE", arguments->file, "EPANET 2.2 or 2.3 input file (.inp)")->required();
+  command->add_flag("--extended", arguments->extended,
+                    "The whole period, every reporting step (default: t = 0)");
+  command->add_option("--accuracy", arguments->accuracy, "Instead of the file's ACCURACY, in (0, 0.1]");
+  command->add_option("--ball-mm", arguments->ball_mm, "Tell which links a ball of this diameter passes");
+  CLI::Option* from =
+      command->add_option("--from", arguments->from, "Tell where the water takes the ball from this node");
+  command->add_option("--to", arguments->to, "Tell the fastest way to this node")->needs(from);
+  command->add_flag("--all", arguments->all, "Print tables in full");
+  command->add_flag("--csv", arguments->csv, "Print results as CSV");
+  command->footer(kFooter);
+  command->callback([arguments, &display, &exit_code] {
+    exit_code = ReportNetwork(LoadNetwork(arguments->file), *arguments, display);
+  });
+}
+
+}  // namespace piperun::tools
