@@ -60,6 +60,7 @@ void PipeDrafts::DropVertex(int pipe, std::size_t vertex) {
   std::vector<Vector3d>& drawn_W = draft(pipe).drawn_W;
   Demand(vertex > 0 && vertex + 1 < drawn_W.size(), "only inner vertices may be left out");
   drawn_W.erase(drawn_W.begin() + static_cast<std::ptrdiff_t>(vertex));
+  DropRepeatedVertices(drawn_W);  // the feet of a spur
   Draw(pipe);
 }
 
