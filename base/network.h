@@ -25,6 +25,12 @@ struct NodeSpec {
   bool open_water = false;                 ///< a reservoir or tank: whoever comes here has left the pipes
 };
 
+/// A concentric reducer at an end of a pipe: the bore widens to that of the pipe it meets there.
+struct Cone {
+  double length_m = 0;  ///< along the pipe, from its end; 0: none
+  double end_radius_m = 0;
+};
+
 /// A pipe from node to node as a user describes it: the polyline from -> vertices -> to, corners rounded.
 struct PipeSpec {
   std::string id;
@@ -35,14 +41,9 @@ struct PipeSpec {
   double bend_radius_m = 0;  ///< of the centreline, at every vertex; not read when there is none
   std::vector<Vector3d> vertices_m;
   WallMaterial material;
-  double length_m = 0;   ///< as stated; 0: as drawn
-  bool passable = true;  ///< false: a pump, a closed or throttling valve; nothing solid gets through
-};
-
-/// A concentric reducer at an end of a pipe: the bore widens to that of the pipe it meets there.
-struct Cone {
-  double length_m = 0;  ///< along the pipe, from its end; 0: none
-  double end_radius_m = 0;
+  double length_m = 0;      ///< as stated; 0: as drawn
+  Cone cone_from, cone_to;  ///< on the straight at that end
+  bool passable = true;     ///< false: a pump, a closed or throttling valve; nothing solid gets through
 };
 
 /// One end of a pipe.
@@ -80,7 +81,7 @@ class Network {
  public:
   /// Throws InputError with the key path ("network.pipes[2].diameter_m") of what is wrong: an id that is
   /// empty, used twice or unknown; a size that is not a finite number > 0; a coordinate that is not finite; a
-  /// bend tighter than the bore; a bend that does not fit; no pipe at all.
+  /// bend tighter than the bore; a bend or a cone that does not fit; no pipe at all.
   Network(std::vector<NodeSpec> nodes, const std::vector<PipeSpec>& pipes);
 
   const std::vector<NodeSpec>& nodes() const { return nodes_; }
