@@ -43,6 +43,17 @@ void RequireBendWiderThanBore(const PipeSpec& spec, const std::string& key) {
                    key);
 }
 
+void RequireConeFits(const Cone& cone, const CentrelinePiece& at_end, double free_m, const std::string& key) {
+  if (cone.length_m == 0) return;
+  RequirePositive(cone.length_m, key + ".length_m");
+  RequirePositive(cone.end_radius_m, key + ".end_radius_m");
+  const double longest_m = at_end.straight() ? std::min(at_end.length_m, free_m) : 0;
+  if (cone.length_m <= longest_m) return;
+  throw InputError(FormatNumber(cone.length_m) + " m does not fit; the straight at this end has room for " +
+                       FormatNumber(longest_m) + " m",
+                   key + ".length_m");
+}
+
 int ResolveNode(const IdIndex& nodes, const std::string& id, const std::string& key) {
   const auto node = FindId(nodes, id);
   if (!node) throw InputError("there is no node '" + id + "'", key);
@@ -76,8 +87,11 @@ Pipe MakePipe(const PipeSpec& spec, PipeNodes at, PipeCourse course) {
   pipe.material = spec.material;
   pipe.centreline = std::move(course.centreline);
   pipe.length_m = pipe.centreline.back().s_end_m();
-  pipe.cone_from = course.cone_from;
-  pipe.cone_to = course.cone_to;
+  RequireConeFits(spec.cone_from, pipe.centreline.front(), pipe.length_m, key + ".cone_from");
+  RequireConeFits(spec.cone_to, pipe.centreline.back(), pipe.length_m - spec.cone_from.length_m,
+                  key + ".cone_to");
+  pipe.cone_from = spec.cone_from.length_m > 0 ? spec.cone_from : course.cone_from;
+  pipe.cone_to = spec.cone_to.length_m > 0 ? spec.cone_to : course.cone_to;
   pipe.passable = spec.passable;
   return pipe;
 }

@@ -27,6 +27,12 @@ struct NodeSpec {
   bool open_water = false;                 ///< a reservoir or tank: whoever comes here has left the pipes
 };
 
+/// A concentric reducer at an end of a pipe: the bore widens to that of the pipe it meets there.
+struct Cone {
+  double length_m = 0;  ///< along the pipe, from its end; 0: none
+  double end_radius_m = 0;
+};
+
 /// A pipe from node to node as a user describes it: the polyline from -> vertices -> to, corners rounded.
 struct PipeSpec {
   std::string id;
@@ -38,15 +44,10 @@ struct PipeSpec {
       0;  ///< of the centreline, at every vertex and where it meets one other pipe; 0: none
   std::vector<Vector3d> vertices_m;
   WallMaterial material;
-  double length_m = 0;     ///< as stated; 0: as drawn
-  bool passable = true;    ///< false: a pump, a closed or throttling valve; nothing solid gets through
-  bool fit_bends = false;  ///< bends that do not fit are made tighter or left out, not refused
-};
-
-/// A concentric reducer at an end of a pipe: the bore widens to that of the pipe it meets there.
-struct Cone {
-  double length_m = 0;  ///< along the pipe, from its end; 0: none
-  double end_radius_m = 0;
+  double length_m = 0;      ///< as stated; 0: as drawn
+  bool passable = true;     ///< false: a pump, a closed or throttling valve; nothing solid gets through
+  bool fit_bends = false;   ///< bends that do not fit are made tighter or left out, not refused
+  Cone cone_from, cone_to;  ///< as stated; without, one is made where the next pipe in line is wider
 };
 
 /// One end of a pipe.
@@ -86,7 +87,7 @@ class Network {
   /// Throws InputError with the key path ("network.pipes[2].diameter_m") of what is wrong: an id that is
   /// empty, used twice or unknown; a pipe from a node to itself; a size that is not a finite number > 0; a
   /// coordinate that is not finite; a length shorter than the rise; a bend tighter than the bore; a bend that
-  /// does not fit; no pipe at all.
+  /// or cone that does not fit; no pipe at all.
   Network(std::vector<NodeSpec> nodes, const std::vector<PipeSpec>& pipes);
 
   const std::vector<NodeSpec>& nodes() const { return nodes_; }
