@@ -64,14 +64,21 @@ TubeBall MakeTubeBall(const BallParams& ball, const FluidLoadCoefficients& c) {
           ball.rolling_resistance * r};
 }
 
+/// The pipes of the route; whatever else meets them at its nodes is closed to the ball.
+std::vector<bool> FindOpenPipes(const Network& network, const Route& route) {
+  std::vector<bool> open(network.pipes().size());
+  for (const RouteLeg& leg : route.legs()) open[static_cast<std::size_t>(leg.pipe)] = true;
+  return open;
+}
+
 class BallInPipe : public Motion {
  public:
   BallInPipe(const BallInPipeParams& params, const MotionContext& context)
       : context_(context),
         rate_(params.rate_Hz),
-        field_(*context.route, *context.flow, context.water, context.gravity_W.norm(), context.ball.radius_m),
-        coefficients_(CalcFluidLoadCoefficients(context.ball, context.water,
-                                                context.route->pieces().front().radius_m, context.gravity_W)),
+        bore_(*context.network, FindOpenPipes(*context.network, *context.route)),
+        field_(bore_, *context.flow, context.water, context.gravity_W.norm(), context.ball.radius_m),
+        coefficients_(CalcFluidLoadCoefficients(context.ball, context.water, context.gravity_W)),
         world_(*context.route, MakeTubeBall(context.ball, coefficients_), rate_,
                MakeStart(context, context.lateral_sd_m),
                [this](const BallInstant& ball) { return EvalLoad(ball); }) {
@@ -92,7 +99,12 @@ class BallInPipe : public Motion {
 
  private:
   BallLoad EvalLoad(const BallInstant& ball) {
-    water_ = field_.Eval(ball.spot, ball.p_WB, ball.time);
+    const RoutePiece& piece = context_.route->pieces()[ball.spot.piece];
+    const int sense = piece.reversed ? -1 : 1;
+    NetworkSpot spot{piece.pipe, 0, piece.PipeS_m(ball.spot.chainage_m), ball.spot.axis};
+    spot.axis.tangent_W *= sense;
+    water_ = field_.Eval(spot, ball.p_WB, ball.time);
+    water_.bulk_speed_m_s *= sense;
     const FluidLoad load = CalcFluidLoad(coefficients_, ball.v_WB_W, ball.w_WB_W, water_);
     return {load.Force_W_N(), load.spin_torque_W_N_m};
   }
@@ -139,6 +151,7 @@ class BallInPipe : public Motion {
 
   MotionContext context_;
   Rate rate_;
+  Bore bore_;
   FlowField field_;
   FluidLoadCoefficients coefficients_;
   WaterAtBall water_;  // where and when the world evaluated the loads last: at its present state
