@@ -1,49 +1,117 @@
 #pragma once
 
+#include <map>
+#include <memory>
+#include <vector>
+
 #include "base/water.h"
+#include "sim/axial_flow.h"
 #include "sim/flow_timeline.h"
+#include "sim/junction_flow.h"
+#include "sim/network_spot.h"
 #include "sim/pipe_flow.h"
-#include "sim/route_spot.h"
 
 namespace piperun::sim {
 
 /// Mean (not turbulent) flow as a ball sees it: averages over its frontal disc, in W.
 struct WaterAtBall {
   Vector3d velocity_W = Vector3d::Zero();
-  Vector3d acceleration_W = Vector3d::Zero();        ///< Du/Dt along the water's path
+  Vector3d acceleration_W = Vector3d::Zero();        ///< Du/Dt = du/dt + u . grad u
   Vector3d spin_W = Vector3d::Zero();                ///< 1/2 curl u
   Vector3d pressure_fall_W_Pa_m = Vector3d::Zero();  ///< -grad p that friction costs, along the flow
-  double bulk_speed_m_s = 0;                         ///< Q/A, positive along the route
+  double bulk_speed_m_s = 0;                         ///< Q/A, positive from `from` to `to` of the pipe
   double pressure_Pa = 0;                            ///< gauge, static, at the ball's centre
+  double bore_radius_m = 0;                          ///< of the bore around the ball
 };
 
-/// The flow along a route around a ball of one size:
+/// The flow in a network around a ball of one size. Along pipes:
 ///
 ///   u      = U uhat(offset) k t,      k = 1/(1 - d . kappa)   (d: from the axis to the ball's centre)
-///   Du/Dt  = |u|^2 k kappa            centripetal, towards the bend's centre
+///   Du/Dt  = |u|^2 k kappa + dU/dt uhat k t      centripetal, towards the bend's centre
 ///   curl u = grad u x t,              grad u the mean gradient over the disc
 ///   -dp/ds = f/D rho U^2/2            friction (Darcy-Weisbach)
 ///   p      = rho g (head - z)
 ///
 /// uhat: profile of sim/pipe_flow.h. k makes the flow in a bend a free vortex (u ~ 1/r about the bend's
 /// axis); it is 1 on a straight, and keeps the flow rate within (R/R_c)^2/4. Curvature and k begin at once
-/// with the bend, where a real flow takes about a diameter. Left out: secondary flow, turbulence, unsteady
-/// acceleration.
+/// with the bend, where a real flow takes about a diameter.
+///
+/// Fittings, divergence-free by construction (docs/physics.md, "Flow in fittings"):
+/// - Cones and places that take water out (leaks, nodes of two pipes): a Stokes stream function
+///   (sim/axial_flow.h), with the profile's own mean over the ball's disc; the water taken leaves through the
+///   wall along one diameter to either side.
+/// - Joints: potential flow (sim/junction_flow.h) up to 2.5 radii past the last opening, where it is uniform;
+///   from there the uniform flow goes over into the pipe's profile along four radii. A harmonic velocity's
+///   mean over a ball is its value at the centre, so there is nothing to average. Pipes too short for that
+///   are shared by their joints half and half. Nodes with one pipe, and joints with nearly parallel arms
+///   (JunctionFlow::Covers), have no joint flow: the pipe's flow goes up to the node.
+///
+/// Left out: secondary flow, separation, turbulence, velocity heads (as by the hydraulics).
 class FlowField {
  public:
-  /// References are kept. The ball must fit the route's bore: d/D <= 0.95 (aborts).
-  FlowField(const Route& route, const FlowTimeline& flow, const WaterProperties& water, double gravity_m_s2,
+  /// References are kept. Where flow passes the ball must fit: d/D <= 0.95 (aborts on a spot in a bore
+  /// that is tighter).
+  FlowField(const Bore& bore, const FlowTimeline& flow, const WaterProperties& water, double gravity_m_s2,
             double ball_radius_m);
 
-  /// Flow at `spot` for a ball centred at p_W. No allocation.
-  WaterAtBall Eval(const RouteSpot& spot, const Vector3d& p_W, TrueTime t) const;
+  /// Flow at `spot` for a ball centred at p_L, in the drawing of the spot's pipe. Bores and joints are worked
+  /// out when they are met first (1 ms and 10 to 100 ms); nothing else allocates. Not for several threads.
+  WaterAtBall Eval(const NetworkSpot& spot, const Vector3d& p_L, TrueTime t) const;
+
+  /// The flow of the joint at a node, or null where there is none; for reports.
+  const JunctionFlow* FindJunction(int node) const;
 
  private:
-  const Route& route_;
+  /// What an end of a pipe does to the flow.
+  struct EndZone {
+    double reach_m = 0;    ///< other arms are felt so far
+    double core_m = 0;     ///< the joint's flow reaches so far; 0: none
+    double profile_m = 0;  ///< the pipe's profile stands from here on
+  };
+  struct PipeZones {
+    EndZone from, to;
+    double profile_share = 1;  ///< of the profile between the ends; less in short pipes
+  };
+  struct PipeTables {
+    const DiscMeanTable* body = nullptr;
+    const DiscMeanTable* from = nullptr;  ///< at a cone's wide end
+    const DiscMeanTable* to = nullptr;
+  };
+  struct Junction {
+    JunctionFlow flow;
+    std::vector<double> outflow_m3_s;          // scratch: per arm
+    std::vector<double> outflow_change_m3_s2;  // their time derivatives
+  };
+  struct Site;  // a spot with what the flow there depends on
+
+  PipeZones MakeZones(int pipe) const;
+  bool HasJunction(const Joint& joint) const;
+  Site MakeSite(const NetworkSpot& spot, const Vector3d& p_L, TrueTime t) const;
+  Jet CalcFlow(const Site& site) const;
+  double FlowBeyond(const Site& site, bool at_to) const;
+  Jet CalcProfileShare(const Site& site) const;
+  AxialFlow CalcAxialFlow(const Site& site, const Jet& flow, const Jet& share) const;
+
+  WaterAtBall EvalDeveloped(const Site& site) const;
+  WaterAtBall EvalShaped(const Site& site, const Jet& flow, const Jet& share) const;
+  WaterAtBall EvalJunction(const Site& site, bool at_to) const;
+  void SetOutflows(const Joint& joint, TrueTime t, Junction& junction) const;
+  void FillJunctionScalars(const Site& site, bool at_to, double outflow_m3_s, WaterAtBall& water) const;
+  void AddFriction(const Site& site, double share, WaterAtBall& water) const;
+
+  Junction& FindOrMakeJunction(int node) const;
+  const DiscMeanTable& FindOrMakeTable(double radius_m) const;
+  const PipeTables& Tables(int pipe) const;
+
+  const Bore& bore_;
   const FlowTimeline& flow_;
   WaterProperties water_;
   double gravity_m_s2_;
-  DiscMeanTable disc_;
+  double ball_radius_m_;
+  std::vector<PipeZones> zones_;                                     // per pipe
+  mutable std::map<double, std::unique_ptr<DiscMeanTable>> tables_;  // by bore radius
+  mutable std::vector<PipeTables> pipe_tables_;                      // per pipe
+  mutable std::vector<std::unique_ptr<Junction>> junctions_;         // per node
 };
 
 }  // namespace piperun::sim

@@ -6,21 +6,20 @@
 
 namespace piperun::sim {
 
-/// What the loads need to know of ball, water and bore, worked out once.
+/// What the loads need to know of ball and water, worked out once.
 struct FluidLoadCoefficients {
   Vector3d weight_W_N = Vector3d::Zero();  ///< (m - rho V) g
   double displaced_mass_kg = 0;            ///< rho V
   double added_mass_kg = 0;                ///< m_a = C_a rho V
   double volume_m3 = 0;
   double diameter_m = 0;
-  double diameter_ratio = 0;  ///< d/D
   double viscosity_m2_s = 0;
   double drag_scale_N_s_m = 0;  ///< pi/8 rho nu d
   double spin_scale_N_m_s = 0;  ///< k_spin rho nu r^3 / 8
 };
 
 FluidLoadCoefficients CalcFluidLoadCoefficients(const BallParams& ball, const WaterProperties& water,
-                                                double bore_radius_m, const Vector3d& gravity_W);
+                                                const Vector3d& gravity_W);
 
 /// The loads on the ball one by one. They act at its centre; the added mass itself belongs into the mass
 /// matrix (a point mass m_a at the centre), never here: as a force it is unstable when m_a > m.
@@ -44,7 +43,7 @@ struct FluidLoad {
 ///   drag                 1/2 rho A C_D(Re/f) |u-v| (u-v) / f^2,  Re = |u-v| d/nu
 ///   spin torque          k_spin 1/2 rho r^5 C_w |w_u-w| (w_u-w), w_u = 1/2 curl u
 ///
-/// with f = CalcWallFactor(d/D, Re).
+/// with f = CalcWallFactor(d/D, Re), D the bore around the ball (WaterAtBall::bore_radius_m > 0).
 ///
 /// u, Du/Dt, curl u are averages over the frontal disc (sim/flow_field.h). C_D, f and C_w: sim/drag.h, with
 /// sources and ranges; every speed from rest up is allowed. f is measured for a sphere on the axis; k_spin is

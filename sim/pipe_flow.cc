@@ -86,10 +86,20 @@ struct CubicWeights {
   std::array<double, 4> w;
 };
 
+std::array<double, 4> CalcLagrangeWeights(double a) {
+  const double b = a - 1, c = a - 2, d = a - 3;
+  return {-b * c * d / 6, a * c * d / 2, -a * b * d / 2, a * b * c / 6};
+}
+
 CubicWeights CalcCubicWeights(double x, int count) {
   const int first = std::clamp(static_cast<int>(x) - 1, 0, count - 4);
-  const double a = x - first, b = a - 1, c = a - 2, d = a - 3;
-  return {first, {-b * c * d / 6, a * c * d / 2, -a * b * d / 2, a * b * c / 6}};
+  return {first, CalcLagrangeWeights(x - first)};
+}
+
+/// 1/n of a profile in units of the table's spacing.
+double CalcExponentNode(double exponent, int count) {
+  Demand(exponent >= kMinExponent && exponent <= kMaxExponent, "the profile's exponent lies in [3, 14]");
+  return (1 / exponent - 1 / kMaxExponent) / (1 / kMinExponent - 1 / kMaxExponent) * (count - 1);
 }
 
 }  // namespace
@@ -125,12 +135,36 @@ DiscMeanTable::DiscMeanTable(double lambda) : lambda_(lambda), step_((1 - lambda
           CalcDiscVelocity(1 / q, lambda, offset), CalcDiscGradient(1 / q, lambda, offset)};
     }
   }
+  for (std::size_t row = 0; row < kExponents; ++row) {
+    flux_[row][0] = 0;
+    for (int j = 0; j + 1 < kOffsets; ++j) {
+      const auto node = static_cast<std::size_t>(j);
+      flux_[row][node + 1] = flux_[row][node] + IntegrateCell(row, j, (j + 1) * step_);
+    }
+  }
+}
+
+double DiscMeanTable::IntegrateCell(std::size_t row, int cell, double offset) const {
+  // the integrand is of fourth degree: three points of Gauss are exact
+  constexpr std::array<double, 3> kPoint{-0.7745966692414834, 0, 0.7745966692414834};
+  constexpr std::array<double, 3> kWeight{5.0 / 9, 8.0 / 9, 5.0 / 9};
+  const double begin = cell * step_, half = 0.5 * (offset - begin);
+  const int first = std::clamp(cell - 1, 0, kOffsets - 4);
+  double sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double x = begin + half * (1 + kPoint[k]);
+    const std::array<double, 4> w = CalcLagrangeWeights(x / step_ - first);
+    double velocity = 0;
+    for (std::size_t j = 0; j < 4; ++j) {
+      velocity += w[j] * nodes_[row][static_cast<std::size_t>(first) + j].velocity;
+    }
+    sum += kWeight[k] * velocity * x;
+  }
+  return half * sum;
 }
 
 DiscMean DiscMeanTable::EvalTurbulent(double exponent, double offset) const {
-  Demand(exponent >= kMinExponent && exponent <= kMaxExponent, "the profile's exponent lies in [3, 14]");
-  const double q = (1 / exponent - 1 / kMaxExponent) / (1 / kMinExponent - 1 / kMaxExponent);
-  const CubicWeights row = CalcCubicWeights(q * (kExponents - 1), kExponents);
+  const CubicWeights row = CalcCubicWeights(CalcExponentNode(exponent, kExponents), kExponents);
   const CubicWeights column = CalcCubicWeights(offset / step_, kOffsets);
   DiscMean mean;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -153,6 +187,20 @@ DiscMean DiscMeanTable::Eval(const VelocityProfile& profile, double offset) cons
   const double laminar_gradient = -4 * offset;
   return {turbulent * mean.velocity + (1 - turbulent) * laminar_velocity,
           turbulent * mean.gradient + (1 - turbulent) * laminar_gradient};
+}
+
+double DiscMeanTable::EvalFlux(const VelocityProfile& profile, double offset) const {
+  const double turbulent = profile.turbulent_fraction, square = offset * offset;
+  double flux = (1 - turbulent) * square * (1 - 0.5 * lambda_ * lambda_ - 0.5 * square);
+  if (turbulent == 0) return flux;
+  const CubicWeights rows = CalcCubicWeights(CalcExponentNode(profile.exponent, kExponents), kExponents);
+  const int cell = std::clamp(static_cast<int>(offset / step_), 0, kOffsets - 2);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t row = static_cast<std::size_t>(rows.first) + i;
+    flux += turbulent * rows.w[i] *
+            (flux_[row][static_cast<std::size_t>(cell)] + IntegrateCell(row, cell, offset));
+  }
+  return flux;
 }
 
 }  // namespace piperun::sim

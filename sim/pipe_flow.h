@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 namespace piperun::sim {
 
@@ -42,15 +43,22 @@ class DiscMeanTable {
  public:
   explicit DiscMeanTable(double lambda);
   DiscMean Eval(const VelocityProfile& profile, double offset) const;
+  /// Integral of velocity times offset from the axis to `offset`: the stream function of what the ball sees.
+  /// The primitive of Eval's very interpolant, so that a flow made of both conserves mass to rounding.
+  double EvalFlux(const VelocityProfile& profile, double offset) const;
+  double lambda() const { return lambda_; }
 
  private:
   static constexpr int kExponents = 9;  // nodes in 1/n
   static constexpr int kOffsets = 33;
   DiscMean EvalTurbulent(double exponent, double offset) const;
+  /// Integral of the interpolant of one exponent from node `cell` to `offset`.
+  double IntegrateCell(std::size_t row, int cell, double offset) const;
 
   double lambda_;
   double step_;  // of the offset
   std::array<std::array<DiscMean, kOffsets>, kExponents> nodes_;
+  std::array<std::array<double, kOffsets>, kExponents> flux_;  // up to each node
 };
 
 }  // namespace piperun::sim

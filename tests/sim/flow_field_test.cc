@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/hydraulics.h"
@@ -21,9 +22,25 @@ SteadyFlow Solve(const PipeLine& line, double speed_m_s) {
   return SolveSteadyFlow(line.network, line.route, {flow, 2e5}, {}, kWater, kGravity);
 }
 
+/// The spot of a point that lies in a given pipe.
+NetworkSpot SpotIn(const Network& network, int pipe, const Vector3d& p_W) {
+  const auto& pieces = network.pipe(pipe).centreline;
+  NetworkSpot spot{pipe, 0, 0, {}};
+  double nearest = 1e300;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const double s = std::clamp(FindNearest(pieces[i], p_W), pieces[i].s_begin_m, pieces[i].s_end_m());
+    const CentrelinePoint axis = EvalCentreline(pieces[i], s);
+    if ((axis.p_W - p_W).norm() >= nearest) continue;
+    nearest = (axis.p_W - p_W).norm();
+    spot = {pipe, i, s, axis};
+  }
+  return spot;
+}
+
 WaterAtBall EvalAt(const PipeLine& line, const SteadyFlow& flow, const Vector3d& p_W) {
-  const FlowField field(line.route, flow.timeline, kWater, kGravity, 0.03);
-  return field.Eval(FindRouteSpot(line.route, p_W, 0), p_W, {});
+  const Bore bore(line.network);
+  const FlowField field(bore, flow.timeline, kWater, kGravity, 0.03);
+  return field.Eval(SpotIn(line.network, 0, p_W), p_W, {});
 }
 
 TEST(FlowField, OnTheInvertOfAStraightPipe) {
@@ -55,15 +72,13 @@ TEST(FlowField, TurnsAsAFreeVortexInABend) {
   EXPECT_NEAR((inner.acceleration_W + inner.velocity_W.squaredNorm() / 0.46 * outward).norm(), 0, 1e-12);
 }
 
-TEST(FlowField, RunsAlongTheRouteThroughAReversedPipe) {
+TEST(FlowField, RunsAgainstThePipeWhereTheFlowDoes) {
   const PipeLine line = MakePipeLine({{0, 0, 0}, {50, 0, 0}});
   const Route back = FindRoute(line.network, 1, 0);
   const SteadyFlow flow = SolveSteadyFlow(line.network, back, {0.01, 2e5}, {}, kWater, kGravity);
-  const FlowField field(back, flow.timeline, kWater, kGravity, 0.03);
-  const Vector3d p_W(30, 0, -0.045);
-  const WaterAtBall water = field.Eval(FindRouteSpot(back, p_W, 0), p_W, {});
+  const WaterAtBall water = EvalAt(line, flow, {30, 0, -0.045});
   EXPECT_LT(flow.timeline.Eval(0, 30, {}).flow_m3_s, 0);
-  EXPECT_GT(water.bulk_speed_m_s, 0);
+  EXPECT_LT(water.bulk_speed_m_s, 0);
   EXPECT_LT(water.velocity_W.x(), 0);
   EXPECT_LT(water.pressure_fall_W_Pa_m.x(), 0);
 }

@@ -19,8 +19,15 @@ const WaterProperties kWater{20, 1000, 1e-6, 1482};
 constexpr double kGravity = 9.81;
 const BallParams kBall{.radius_m = 0.03, .density_kg_m3 = 1100, .added_mass_coefficient = 0.5};
 
-FluidLoadCoefficients Coefficients(double bore_radius_m, const BallParams& ball = kBall) {
-  return CalcFluidLoadCoefficients(ball, kWater, bore_radius_m, {0, 0, -kGravity});
+FluidLoadCoefficients Coefficients(const BallParams& ball = kBall) {
+  return CalcFluidLoadCoefficients(ball, kWater, {0, 0, -kGravity});
+}
+
+/// Water at rest in a bore.
+WaterAtBall Still(double bore_radius_m) {
+  WaterAtBall water;
+  water.bore_radius_m = bore_radius_m;
+  return water;
 }
 
 /// Root of W = 1/2 rho A C_D(V d/nu) V^2, the correlation typed anew.
@@ -40,7 +47,7 @@ double BrownLawler(double re) { return 24 / re * (1 + 0.15 * std::pow(re, 0.681)
 
 TEST(FluidLoad, DragBalancesWeightAtTheFreeTerminalVelocity) {
   const double v_t = SolveFreeTerminalVelocity(BrownLawler);
-  const FluidLoad load = CalcFluidLoad(Coefficients(1e4), {0, 0, -v_t}, Vector3d::Zero(), {});
+  const FluidLoad load = CalcFluidLoad(Coefficients(), {0, 0, -v_t}, Vector3d::Zero(), Still(1e4));
   EXPECT_NEAR(load.Force_W_N().z() / load.weight_W_N.z(), 0, 1e-9);
   // the published root with the Clift-Gauvin refit, which differs from Brown and Lawler by up to 0.6 % in C_D
   const double clift_gauvin = SolveFreeTerminalVelocity([](double re) {
@@ -56,7 +63,9 @@ TEST(FluidLoad, SphereInATubeSettlesBetweenTheIndependentCorrelations) {
     const double newton = (1 - l * l) * std::sqrt(1 - 0.5 * l * l), munroe = 1 - std::pow(l, 1.5);
     const double di_felice = std::pow((1 - l) / (1 - 0.33 * l), 0.85);
     const auto excess = [&](double f) {
-      return CalcFluidLoad(Coefficients(0.03 / l), {0, 0, -f * v_t}, Vector3d::Zero(), {}).Force_W_N().z();
+      return CalcFluidLoad(Coefficients(), {0, 0, -f * v_t}, Vector3d::Zero(), Still(0.03 / l))
+          .Force_W_N()
+          .z();
     };
     EXPECT_LT(excess(std::min(munroe, di_felice)), 0) << l;  // still gaining speed
     EXPECT_GT(excess(1.015 * newton), 0) << l;  // Kehlenbeck and Di Felice equal Newton within 1.5 %
@@ -65,25 +74,26 @@ TEST(FluidLoad, SphereInATubeSettlesBetweenTheIndependentCorrelations) {
 
 TEST(FluidLoad, IsStokesDragWhenSlowAndFinite) {
   const Vector3d v(1e-12, 0, 0);
-  const FluidLoad load = CalcFluidLoad(Coefficients(1e4), v, Vector3d::Zero(), {});
+  const FluidLoad load = CalcFluidLoad(Coefficients(), v, Vector3d::Zero(), Still(1e4));
   EXPECT_NEAR(load.drag_W_N.x() / (-3 * std::numbers::pi * 1e-3 * 0.06 * 1e-12), 1, 1e-3);
-  EXPECT_EQ(CalcFluidLoad(Coefficients(0.075), Vector3d::Zero(), Vector3d::Zero(), {}).drag_W_N.norm(), 0);
+  EXPECT_EQ(CalcFluidLoad(Coefficients(), Vector3d::Zero(), Vector3d::Zero(), Still(0.075)).drag_W_N.norm(),
+            0);
 }
 
 TEST(FluidLoad, DragOpposesTheSlipInEveryDirection) {
-  WaterAtBall water;
+  WaterAtBall water = Still(0.075);
   water.velocity_W = {0.3, -0.2, 0.1};
-  const FluidLoad load = CalcFluidLoad(Coefficients(0.075), {0.1, 0.4, 0.2}, Vector3d::Zero(), water);
+  const FluidLoad load = CalcFluidLoad(Coefficients(), {0.1, 0.4, 0.2}, Vector3d::Zero(), water);
   const Vector3d slip = water.velocity_W - Vector3d(0.1, 0.4, 0.2);
   EXPECT_NEAR(load.drag_W_N.cross(slip).norm(), 0, 1e-15);
   EXPECT_GT(load.drag_W_N.dot(slip), 0);
 }
 
 TEST(FluidLoad, WeightAccelerationAndPressureFallAreTheirFormulas) {
-  WaterAtBall water;
+  WaterAtBall water = Still(0.075);
   water.acceleration_W = {0, 2, 0};
   water.pressure_fall_W_Pa_m = {67, 0, 0};
-  const FluidLoad load = CalcFluidLoad(Coefficients(0.075), Vector3d::Zero(), Vector3d::Zero(), water);
+  const FluidLoad load = CalcFluidLoad(Coefficients(), Vector3d::Zero(), Vector3d::Zero(), water);
   const double volume = 1.130973e-4;  // pi/6 0.06^3
   EXPECT_NEAR(load.weight_W_N.z(), -100 * volume * kGravity, 1e-7);
   EXPECT_NEAR(load.fluid_acceleration_W_N.y(), 1500 * volume * 2, 1e-6);  // rho V and half of it added
@@ -95,27 +105,27 @@ TEST(FluidLoad, SpinTorqueOfTheReferenceBall) {
   // T = 500 * 0.03^5 * 0.038309 * 33.33^2 = 5.172e-4 N m; k_spin 0.6 of it
   BallParams ball = kBall;
   ball.spin_drag_factor = 0.6;
-  const FluidLoad load = CalcFluidLoad(Coefficients(0.075, ball), Vector3d::Zero(), {0, 100.0 / 3, 0}, {});
+  const FluidLoad load = CalcFluidLoad(Coefficients(ball), Vector3d::Zero(), {0, 100.0 / 3, 0}, Still(0.075));
   EXPECT_NEAR(load.spin_torque_W_N_m.y(), -0.6 * 5.172e-4, 2e-7);
 }
 
 TEST(FluidLoad, SinkingBallReachesTerminalVelocity) {
   // in the Bullet world, on the axis of a riser, whatever the step; its speed makes the forces cancel
   const PipeLine line = MakePipeLine({{0, 0, 100}, {0, 0, 0}});
-  const FluidLoadCoefficients c = Coefficients(0.075);
+  const FluidLoadCoefficients c = Coefficients();
   const auto sink = [&](double rate_Hz) {
     BallStart start;
     start.X_WB.p = {0, 0, 99};
-    BallWorld world(
-        line.route, {0.03, kBall.mass_kg() + c.added_mass_kg, 4.5e-5, 0.4, 0}, Rate(rate_Hz), start,
-        [&](const BallInstant& ball) {
-          return BallLoad{CalcFluidLoad(c, ball.v_WB_W, ball.w_WB_W, {}).Force_W_N(), Vector3d::Zero()};
-        });
+    BallWorld world(line.route, {0.03, kBall.mass_kg() + c.added_mass_kg, 4.5e-5, 0.4, 0}, Rate(rate_Hz),
+                    start, [&](const BallInstant& ball) {
+                      return BallLoad{CalcFluidLoad(c, ball.v_WB_W, ball.w_WB_W, Still(0.075)).Force_W_N(),
+                                      Vector3d::Zero()};
+                    });
     for (int i = 0; i < 20 * rate_Hz; ++i) world.Step();
     return -world.state().v_WB_W.z();
   };
   const double v = sink(1000);
-  const FluidLoad load = CalcFluidLoad(c, {0, 0, -v}, Vector3d::Zero(), {});
+  const FluidLoad load = CalcFluidLoad(c, {0, 0, -v}, Vector3d::Zero(), Still(0.075));
   EXPECT_NEAR(load.Force_W_N().z() / load.weight_W_N.z(), 0, 1e-9);
   EXPECT_NEAR(sink(100) / v, 1, 1e-9);
   EXPECT_NEAR(sink(4000) / v, 1, 1e-9);

@@ -129,12 +129,5 @@ TEST(Hydraulics, RefusesWhatCannotFlow) {
   ExpectInputError("leaks[0].cd", {{"L", 0, 5, 0.005, 1.5}});
 }
 
-TEST(FlowTimeline, SwitchesStatesAtTheirTimes) {
-  const auto state = [](double q) { return FlowState{{{{.s_end_m = 10, .flow_m3_s = q}}}}; };
-  const FlowTimeline flow({0.5}, {TrueTime{}, TrueTime{FromSeconds(2)}}, {state(1), state(3)});
-  EXPECT_EQ(flow.Eval(0, 5, TrueTime{FromSeconds(1.999999999)}).velocity_m_s, 2);
-  EXPECT_EQ(flow.Eval(0, 5, TrueTime{FromSeconds(2)}).velocity_m_s, 6);
-}
-
 }  // namespace
 }  // namespace piperun::sim

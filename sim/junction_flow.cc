@@ -1,0 +1,214 @@
+#include "sim/junction_flow.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Cholesky>
+
+#include "base/check.h"
+#include "sim/jet.h"
+#include "sim/junction_wall.h"
+
+namespace piperun::sim {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kFadeLength = 1.5;       // radii
+constexpr double kRegularisation = 1e-9;  // of the mean diagonal of the normal equations
+
+double CalcNormalVelocity(const WallPoint& point, const Vector3d& source) {
+  const Vector3d d = point.p_N - source;
+  const double r2 = d.squaredNorm();
+  return d.dot(point.normal) / (4 * std::numbers::pi * r2 * std::sqrt(r2));
+}
+
+/// Rows: points, scaled by the root of their area; columns: sources.
+struct Equations {
+  MatrixXd rows;
+  MatrixXd targets;  ///< one column per unit flow
+  MatrixXd flux;     ///< through each section, per source
+};
+
+Equations MakeEquations(const JunctionWall& wall, const Joint& joint) {
+  const auto arms = static_cast<Eigen::Index>(joint.arms.size());
+  const auto sources = static_cast<Eigen::Index>(wall.sources.size());
+  auto count = static_cast<Eigen::Index>(wall.wall.size());
+  for (const auto& section : wall.sections) count += static_cast<Eigen::Index>(section.size());
+  Equations e{MatrixXd(count, sources), MatrixXd::Zero(count, arms), MatrixXd::Zero(arms, sources)};
+  double wall_area = 0;
+  for (const WallPoint& point : wall.wall) wall_area += point.area_m2;
+
+  Eigen::Index row = 0;
+  const auto add = [&](const WallPoint& point) {
+    const double root = std::sqrt(point.area_m2);
+    for (Eigen::Index j = 0; j < sources; ++j) {
+      e.rows(row, j) = root * CalcNormalVelocity(point, wall.sources[static_cast<std::size_t>(j)]);
+    }
+    return root;
+  };
+  for (const WallPoint& point : wall.wall) {
+    const double root = add(point);
+    e.targets.row(row++).setConstant(-root / wall_area);
+  }
+  for (Eigen::Index i = 0; i < arms; ++i) {
+    const JointArm& arm = joint.arms[static_cast<std::size_t>(i)];
+    const double area = std::numbers::pi * arm.radius_m * arm.radius_m;
+    for (const WallPoint& point : wall.sections[static_cast<std::size_t>(i)]) {
+      const double root = add(point);
+      e.flux.row(i) += root * e.rows.row(row);
+      e.targets(row++, i) = root / area;
+    }
+  }
+  return e;
+}
+
+/// min |rows q - targets|^2 + mu |q|^2 under flux q = 1, by normal equations and multipliers. The conditions
+/// are imposed twice, which takes the rounding of the first time away.
+MatrixXd SolveStrengths(const Equations& e) {
+  const Eigen::Index n = e.rows.cols(), arms = e.flux.rows();
+  MatrixXd normal = MatrixXd::Zero(n, n);
+  normal.selfadjointView<Eigen::Lower>().rankUpdate(e.rows.transpose());
+  normal.diagonal().array() += kRegularisation * normal.trace() / static_cast<double>(n);
+  const Eigen::LLT<MatrixXd> factor(normal);
+  Demand(factor.info() == Eigen::Success, "regularised normal equations are positive definite");
+  const MatrixXd response = factor.solve(e.flux.transpose());
+  const Eigen::LDLT<MatrixXd> conditions(e.flux * response);
+  MatrixXd q = factor.solve(e.rows.transpose() * e.targets);
+  for (int pass = 0; pass < 3; ++pass) {
+    q += response * conditions.solve(MatrixXd::Identity(arms, arms) - e.flux * q);
+  }
+  return q;
+}
+
+JunctionFit CalcFit(const JunctionWall& wall, const Joint& joint, const Equations& e, const MatrixXd& q) {
+  const double unit = std::numbers::pi * joint.sphere_radius_m * joint.sphere_radius_m;
+  const auto walls = static_cast<Eigen::Index>(wall.wall.size());
+  const MatrixXd error = unit * (e.rows * q - e.targets);
+  JunctionFit fit{static_cast<int>(wall.sources.size()), static_cast<int>(wall.wall.size()), 0, 0, 0};
+  double wall_area = 0, section_area = 0;
+  for (const WallPoint& point : wall.wall) wall_area += point.area_m2;
+  for (const auto& section : wall.sections) {
+    for (const WallPoint& point : section) section_area += point.area_m2;
+  }
+  for (Eigen::Index i = 0; i < error.cols(); ++i) {
+    const VectorXd of_wall = error.col(i).head(walls), of_sections = error.col(i).tail(error.rows() - walls);
+    fit.wall_rms = std::max(fit.wall_rms, of_wall.norm() / std::sqrt(wall_area));
+    fit.section_rms = std::max(fit.section_rms, of_sections.norm() / std::sqrt(section_area));
+    for (Eigen::Index k = 0; k < walls; ++k) {
+      const double root = std::sqrt(wall.wall[static_cast<std::size_t>(k)].area_m2);
+      fit.wall_max = std::max(fit.wall_max, std::abs(of_wall[k]) / root);
+    }
+  }
+  return fit;
+}
+
+}  // namespace
+
+bool JunctionFlow::Covers(const Joint& joint) {
+  for (std::size_t i = 0; i < joint.arms.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (joint.arms[i].outward.dot(joint.arms[j].outward) > std::cos(kMinAngle_rad)) return false;
+    }
+  }
+  return joint.arms.size() >= 2;
+}
+
+JunctionFlow::JunctionFlow(const Joint& joint, std::span<const double> core_m) {
+  Demand(Covers(joint) && core_m.size() == joint.arms.size(), "two arms or more, none parallel");
+  const JunctionWall wall = MakeJunctionWall(joint, core_m);
+  const Equations equations = MakeEquations(wall, joint);
+  const MatrixXd strengths = SolveStrengths(equations);
+  fit_ = CalcFit(wall, joint, equations, strengths);
+  sources_.emplace(wall.sources, strengths);
+  for (std::size_t i = 0; i < core_m.size(); ++i) {
+    const double radius = joint.arms[i].radius_m;
+    const double fade_m = std::min(kFadeLength * radius, 0.6 * core_m[i]);
+    arms_.push_back({MakeArmAxes(joint, i), radius, core_m[i] - fade_m, core_m[i], {}});
+  }
+  std::vector<double> unit(arms_.size());
+  for (Arm& arm : arms_) {
+    for (std::size_t i = 0; i < arms_.size(); ++i) {
+      unit.assign(arms_.size(), 0);
+      unit[i] = 1;
+      arm.h.push_back(FindHarmonics(arm, unit));
+    }
+  }
+}
+
+/// Fourier coefficients of dPsi/dr around the wall, mean over the fading part.
+JunctionFlow::Harmonics JunctionFlow::FindHarmonics(const Arm& arm,
+                                                    std::span<const double> outflow_m3_s) const {
+  constexpr int kAngles = 4 * static_cast<int>(kHarmonics), kRings = 5;
+  const double turn_m = 0.5 * (arm.fade_begin_m + arm.core_m);
+  Harmonics h{};
+  for (int k = 0; k < kRings * kAngles; ++k) {
+    const double angle = 2 * std::numbers::pi * (k % kAngles) / kAngles;
+    const double part = (0.5 + static_cast<double>(k / kAngles)) / kRings;
+    const Eigen::Vector2d out(std::cos(angle), std::sin(angle));
+    const Vector3d p = arm.axes * Vector3d(arm.radius_m * out.x(), arm.radius_m * out.y(),
+                                           std::lerp(arm.fade_begin_m, arm.core_m, part));
+    const double slope = sources_->EvalPrimitive(outflow_m3_s, p, arm.axes, turn_m).slope.dot(out);
+    for (std::size_t m = 0; m < kHarmonics; ++m) {
+      const double mode = static_cast<double>(m + 1) * angle;
+      h[m] += 2 * slope / (kAngles * kRings) * std::complex<double>(std::cos(mode), -std::sin(mode));
+    }
+  }
+  return h;
+}
+
+/// h = Re f(zeta), zeta = (x + i y)/R, R f' = sum_m (a_m - i b_m) zeta^(m-1): grad h = (Re, -Im) R f'.
+CrossPrimitive JunctionFlow::EvalHarmonics(const Arm& arm, std::span<const double> outflow_m3_s,
+                                           const Eigen::Vector2d& p) const {
+  const std::complex<double> zeta(p.x() / arm.radius_m, p.y() / arm.radius_m);
+  std::complex<double> slope = 0, curvature = 0;
+  for (std::size_t m = kHarmonics; m-- > 0;) {
+    std::complex<double> coefficient = 0;
+    for (std::size_t i = 0; i < arms_.size(); ++i) coefficient += outflow_m3_s[i] * arm.h[i][m];
+    curvature = curvature * zeta + slope;
+    slope = slope * zeta + coefficient;
+  }
+  curvature /= arm.radius_m;
+  CrossPrimitive h;
+  h.slope = {slope.real(), -slope.imag()};
+  h.hessian << curvature.real(), -curvature.imag(), -curvature.imag(), -curvature.real();
+  return h;
+}
+
+VelocityGradient JunctionFlow::Eval(std::span<const double> outflow_m3_s, std::size_t arm,
+                                    const Vector3d& p_N) const {
+  const Arm& a = arms_[arm];
+  const VelocityGradient core = sources_->Eval(outflow_m3_s, p_N);
+  const Vector3d p = a.axes.transpose() * p_N;  // from here on in the arm's axes
+  if (p.z() <= a.fade_begin_m) return core;
+  const double slope_1_m = -1 / (a.core_m - a.fade_begin_m);
+  const Jet chi = CalcSmoothStep((p.z() - a.core_m) * slope_1_m, slope_1_m);
+  const double uniform_m_s = outflow_m3_s[arm] / (std::numbers::pi * a.radius_m * a.radius_m);
+  const double turn_m = 0.5 * (a.fade_begin_m + a.core_m);
+  const CrossPrimitive psi = sources_->EvalPrimitive(outflow_m3_s, p_N, a.axes, turn_m);
+  const CrossPrimitive h = EvalHarmonics(a, outflow_m3_s, p.head<2>());
+
+  const Vector3d excess = a.axes.transpose() * core.velocity_m_s - uniform_m_s * Vector3d::UnitZ();
+  Vector3d cross = Vector3d::Zero();
+  cross.head<2>() = psi.slope - h.slope + 0.5 * uniform_m_s * p.head<2>();
+  Matrix3d gradient = chi.value * (a.axes.transpose() * core.gradient_1_s * a.axes);
+  gradient.col(2) += chi.d1 * excess + chi.d2 * cross;
+  gradient.topLeftCorner<2, 2>() +=
+      chi.d1 * (psi.hessian - h.hessian + 0.5 * uniform_m_s * Eigen::Matrix2d::Identity());
+  gradient.topRightCorner<2, 1>() += chi.d1 * excess.head<2>();  // d/dz of the cross flow is grad_T Phi
+  const Vector3d velocity = uniform_m_s * Vector3d::UnitZ() + chi.value * excess + chi.d1 * cross;
+  return {a.axes * velocity, a.axes * gradient * a.axes.transpose()};
+}
+
+Vector3d JunctionFlow::EvalVelocity(std::span<const double> outflow_m3_s, std::size_t arm,
+                                    const Vector3d& p_N) const {
+  if (std::all_of(outflow_m3_s.begin(), outflow_m3_s.end(), [](double q) { return q == 0; })) {
+    return Vector3d::Zero();
+  }
+  const bool in_core = arms_[arm].axes.col(2).dot(p_N) <= arms_[arm].fade_begin_m;
+  return in_core ? sources_->EvalVelocity(outflow_m3_s, p_N) : Eval(outflow_m3_s, arm, p_N).velocity_m_s;
+}
+
+}  // namespace piperun::sim
