@@ -77,7 +77,7 @@ void RequireValid(const PipeSpec& spec, const std::string& key) {
   }
 }
 
-Pipe MakePipe(const PipeSpec& spec, PipeNodes at, PipeCourse course) {
+Pipe MakePipe(const PipeSpec& spec, PipeNodes at, PipeCourse course, const std::string& key) {
   Pipe pipe;
   pipe.id = spec.id;
   pipe.from = at.from;
@@ -153,7 +153,7 @@ Network::Network(std::vector<NodeSpec> nodes, const std::vector<PipeSpec>& pipes
   }
   std::vector<PipeCourse> courses = LayPipes({nodes_, pipes, pipe_nodes, ends_});
   for (std::size_t i = 0; i < pipes.size(); ++i) {
-    pipes_.push_back(MakePipe(pipes[i], pipe_nodes[i], std::move(courses[i])));
+    pipes_.push_back(MakePipe(pipes[i], pipe_nodes[i], std::move(courses[i]), ItemKey("network.pipes", i)));
   }
 }
 

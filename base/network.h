@@ -44,10 +44,10 @@ struct PipeSpec {
       0;  ///< of the centreline, at every vertex and where it meets one other pipe; 0: none
   std::vector<Vector3d> vertices_m;
   WallMaterial material;
-  double length_m = 0;      ///< as stated; 0: as drawn
-  bool passable = true;     ///< false: a pump, a closed or throttling valve; nothing solid gets through
-  bool fit_bends = false;   ///< bends that do not fit are made tighter or left out, not refused
-  Cone cone_from, cone_to;  ///< as stated; without, one is made where the next pipe in line is wider
+  double length_m = 0;          ///< as stated; 0: as drawn
+  bool passable = true;         ///< false: a pump, a closed or throttling valve; nothing solid gets through
+  bool fit_bends = false;       ///< bends that do not fit are made tighter or left out, not refused
+  Cone cone_from{}, cone_to{};  ///< as stated; without, one is made where the next pipe in line is wider
 };
 
 /// One end of a pipe.

@@ -14,14 +14,14 @@ namespace piperun::sim {
 /// with the full torque of a sphere far from walls (k_spin = 1). 0.5 to 0.75 stay within 0.02 of the band.
 struct BallParams {
   double radius_m = 0.03;
-  double density_kg_m3 = 1100;                  ///< mean density
-  double inertia_factor = 0.4;                  ///< I / (m r^2): 0.4 solid, 2/3 thin shell
-  double friction = 0.4;                        ///< sliding, ball on wet wall
-  double rolling_resistance = 0.01;             ///< c_rr: resisting torque = c_rr r N
-  double added_mass_coefficient = 0.62;         ///< touching a wall, along it
-  std::optional<double> contact_stiffness_N_m;  ///< of ball and wall together; empty: rigid
-  double contact_damping_N_s_m = 0;             ///< not read when rigid
-  double spin_drag_factor = 0.6;                ///< k_spin: share of the free sphere's spin torque; see above
+  double density_kg_m3 = 1100;                    ///< mean density
+  double inertia_factor = 0.4;                    ///< I / (m r^2): 0.4 solid, 2/3 thin shell
+  double friction = 0.4;                          ///< sliding, ball on wet wall
+  double rolling_resistance = 0.01;               ///< c_rr: resisting torque = c_rr r N
+  double added_mass_coefficient = 0.62;           ///< touching a wall, along it
+  std::optional<double> contact_stiffness_N_m{};  ///< of ball and wall together; empty: rigid
+  double contact_damping_N_s_m = 0;               ///< not read when rigid
+  double spin_drag_factor = 0.6;  ///< k_spin: share of the free sphere's spin torque; see above
   double clock_offset_s = 0;
   double clock_drift_ppm = 0;
 

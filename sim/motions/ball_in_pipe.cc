@@ -110,9 +110,9 @@ class BallInPipe : public Motion {
 
  private:
   BallLoad EvalLoad(const BallInstant& ball) {
-    water_ = field_.Eval(ball.spot, ball.p_LB, ball.time);
-    if (water_.bore_radius_m * kMaxDiameterRatio < context_.ball.radius_m) too_large_ = true;
+    if (!Fits(context_.ball, PipeOf(ball.spot).RadiusAt_m(ball.spot.s_m))) too_large_ = true;
     if (too_large_) return {};  // beyond what drag is known for; the run is over
+    water_ = field_.Eval(ball.spot, ball.p_LB, ball.time);
     const FluidLoad load = CalcFluidLoad(coefficients_, ball.v_WB_W, ball.w_WB_W, water_);
     return {load.Force_W_N(), load.spin_torque_W_N_m};
   }

@@ -111,12 +111,13 @@ TEST(FluidLoad, SpinTorqueOfTheReferenceBall) {
 
 TEST(FluidLoad, SinkingBallReachesTerminalVelocity) {
   // in the Bullet world, on the axis of a riser, whatever the step; its speed makes the forces cancel
-  const PipeLine line = MakePipeLine({{0, 0, 100}, {0, 0, 0}});
+  const testing::BoreNetwork line = testing::MakeBoreLine({{0, 0, 100}, {0, 0, 0}});
   const FluidLoadCoefficients c = Coefficients();
   const auto sink = [&](double rate_Hz) {
     BallStart start;
-    start.X_WB.p = {0, 0, 99};
-    BallWorld world(line.route, {0.03, kBall.mass_kg() + c.added_mass_kg, 4.5e-5, 0.4, 0}, Rate(rate_Hz),
+    start.X_LB.p = {0, 0, 99};
+    start.spot = testing::FindSpot(line.network, 0, start.X_LB.p);
+    BallWorld world(line.bore, {0.03, kBall.mass_kg() + c.added_mass_kg, 4.5e-5, 0.4, 0}, Rate(rate_Hz),
                     start, [&](const BallInstant& ball) {
                       return BallLoad{CalcFluidLoad(c, ball.v_WB_W, ball.w_WB_W, Still(0.075)).Force_W_N(),
                                       Vector3d::Zero()};
