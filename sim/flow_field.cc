@@ -16,6 +16,13 @@ constexpr double kCoreRadii = 2.5;   // of a joint's core beyond its reach
 constexpr double kProfileRadii = 4;  // in which the uniform flow takes the pipe's profile on
 constexpr double kWithdrawalRadii = 2;
 
+/// The cone at a place of a pipe, or null.
+const Cone* FindCone(const Pipe& pipe, double s_m) {
+  if (pipe.cone_from.length_m > 0 && s_m < pipe.cone_from.length_m) return &pipe.cone_from;
+  if (pipe.cone_to.length_m > 0 && pipe.length_m - s_m < pipe.cone_to.length_m) return &pipe.cone_to;
+  return nullptr;
+}
+
 /// Rotation that takes the arm's direction here to its direction at the node: an arm that bends within its
 /// joint's core is unrolled.
 Matrix3d CalcUnrolling(const Vector3d& here, const Vector3d& at_node) {
@@ -94,8 +101,7 @@ WaterAtBall FlowField::Eval(const NetworkSpot& spot, const Vector3d& p_L, TrueTi
     if (core_m > 0 && site.FromEnd_m(at_to) < core_m) return EvalJunction(site, at_to);
   }
   const Jet flow = CalcFlow(site), share = CalcProfileShare(site);
-  const bool cone =
-      spot.s_m < site.pipe.cone_from.length_m || site.pipe.length_m - spot.s_m < site.pipe.cone_to.length_m;
+  const bool cone = FindCone(site.pipe, spot.s_m) != nullptr;
   const bool developed = !cone && share.value == 1 && flow.value == site.flow.flow_m3_s;
   return developed ? EvalDeveloped(site) : EvalShaped(site, flow, share);
 }
@@ -203,10 +209,9 @@ namespace {
 /// Bore radius along a pipe.
 Jet CalcRadius(const Pipe& pipe, double s_m) {
   Jet radius{pipe.RadiusAt_m(s_m), 0, 0};
-  if (s_m < pipe.cone_from.length_m) {
-    radius.d1 = (pipe.radius_m() - pipe.cone_from.end_radius_m) / pipe.cone_from.length_m;
-  } else if (pipe.length_m - s_m < pipe.cone_to.length_m) {
-    radius.d1 = (pipe.cone_to.end_radius_m - pipe.radius_m()) / pipe.cone_to.length_m;
+  if (const Cone* cone = FindCone(pipe, s_m)) {
+    const double slope = (cone->end_radius_m - pipe.radius_m()) / cone->length_m;
+    radius.d1 = cone == &pipe.cone_to ? slope : -slope;
   }
   return radius;
 }
@@ -248,7 +253,7 @@ AxialFlow FlowField::CalcAxialFlow(const Site& site, const Jet& flow, const Jet&
     AddStreamTerm(MakeProfileTerm(*tables.body, profile, weight, scale, r_m), r_m, result);
     return result;
   }
-  const DiscMeanTable& wide = s_m < site.pipe.cone_from.length_m ? *tables.from : *tables.to;
+  const DiscMeanTable& wide = FindCone(site.pipe, s_m) == &site.pipe.cone_from ? *tables.from : *tables.to;
   const Jet part = room * Inverse(radius), square = part * part;
   const double body = (1 - tables.body->lambda()) * (1 - tables.body->lambda());
   const double end = (1 - wide.lambda()) * (1 - wide.lambda());

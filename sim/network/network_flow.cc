@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "base/check.h"
+#include "base/number.h"
 #include "sim/pipe_flow.h"
 
 namespace piperun::sim {
@@ -11,119 +14,148 @@ namespace {
 
 constexpr double kMaxRelativeRoughness = 0.05;  // the end of Moody's chart
 
-double CalcFriction(const Pipe& pipe, double flow_m3_s, const WaterProperties& water) {
-  const double reynolds =
-      std::abs(flow_m3_s) / pipe.area_m2() * pipe.diameter_m / water.kinematic_viscosity_m2_s;
-  return CalcFrictionFactor(reynolds, pipe.material.roughness_m / pipe.diameter_m);
+/// The instants around a time of the period, and how far it lies from the first to the second.
+struct Bracket {
+  std::size_t before = 0;
+  std::size_t after = 0;
+  double share = 0;
+};
+
+Bracket FindBracket(std::span<const HydraulicStep> steps, double time_s) {
+  std::size_t after = 0;
+  while (after < steps.size() && static_cast<double>(steps[after].time_s) <= time_s) ++after;
+  if (after == 0) return {0, 0, 0};
+  if (after == steps.size()) return {after - 1, after - 1, 0};
+  const auto begin = static_cast<double>(steps[after - 1].time_s);
+  const double length = static_cast<double>(steps[after].time_s) - begin;
+  return {after - 1, after, (time_s - begin) / length};
 }
 
-FlowReach MakeReach(const HydraulicModel& model, const HydraulicState& state, int link, double s_begin_m,
-                    double s_end_m) {
-  const auto l = static_cast<std::size_t>(link);
-  FlowReach reach;
-  reach.s_begin_m = s_begin_m;
-  reach.s_end_m = s_end_m;
-  reach.flow_m3_s = IsClosed(state.status[l]) ? 0 : state.flow_m3_s[l];
-  reach.head_begin_m = state.head_m[static_cast<std::size_t>(model.From(link))];
-  reach.head_end_m = state.head_m[static_cast<std::size_t>(model.To(link))];
+double Lerp(double a, double b, double share) { return a + share * (b - a); }
+
+/// Flow and heads of a network at one time, between two instants.
+class Moment {
+ public:
+  Moment(std::span<const HydraulicStep> steps, double time_s) {
+    const Bracket at = FindBracket(steps, time_s);
+    before_ = &steps[at.before].state;
+    after_ = &steps[at.after].state;
+    share_ = at.share;
+  }
+
+  double Flow_m3_s(int link) const { return Mean(before_->flow_m3_s, after_->flow_m3_s, link); }
+  double Head_m(int node) const { return Mean(before_->head_m, after_->head_m, node); }
+  double LeakFlow_m3_s(int junction) const {
+    return Mean(before_->fixed_leak_m3_s, after_->fixed_leak_m3_s, junction) +
+           Mean(before_->variable_leak_m3_s, after_->variable_leak_m3_s, junction);
+  }
+
+ private:
+  double Mean(const std::vector<double>& a, const std::vector<double>& b, int i) const {
+    return Lerp(a[static_cast<std::size_t>(i)], b[static_cast<std::size_t>(i)], share_);
+  }
+
+  const HydraulicState* before_;
+  const HydraulicState* after_;
+  double share_;
+};
+
+/// Where the reaches of every link lie, and which links of the cut model they are.
+std::vector<std::vector<PipePiece>> FindReaches(const LeakyModel& leaky, const Network& network) {
+  std::vector<std::vector<PipePiece>> reaches = leaky.pipes;
+  for (int link = leaky.model.first_pump(); link < leaky.model.link_count(); ++link) {
+    reaches.push_back({{link, 0, 0}});
+  }
+  Demand(reaches.size() == network.pipes().size(), "a network has a pipe for every link of its model");
+  for (std::size_t i = 0; i < reaches.size(); ++i) reaches[i].back().s_end_m = network.pipes()[i].length_m;
+  return reaches;
+}
+
+FrictionLaw MakeFrictionLaw(const Network& network, const WaterProperties& water) {
+  FrictionLaw law;
+  law.kinematic_viscosity_m2_s = water.kinematic_viscosity_m2_s;
+  for (const Pipe& pipe : network.pipes()) {
+    const double relative = pipe.material.roughness_m / pipe.diameter_m;
+    if (!(relative >= 0 && relative <= kMaxRelativeRoughness)) {
+      throw InputError("pipe '" + pipe.id + "' has a roughness of " +
+                           FormatNumber(pipe.material.roughness_m) +
+                           " m; friction is known up to 0.05 diameters, " +
+                           FormatNumber(kMaxRelativeRoughness * pipe.diameter_m) + " m",
+                       "network.pipes");
+    }
+    law.relative_roughness.push_back(relative);
+  }
+  return law;
+}
+
+FlowReach MakeReach(const HydraulicModel& model, const PipePiece& piece, const Moment& moment,
+                    const Pipe& pipe, const FrictionLaw& law, double relative_roughness) {
+  FlowReach reach{piece.s_begin_m,
+                  piece.s_end_m,
+                  moment.Flow_m3_s(piece.link),
+                  moment.Head_m(model.From(piece.link)),
+                  moment.Head_m(model.To(piece.link)),
+                  0};
+  const double speed_m_s = std::abs(reach.flow_m3_s) / pipe.area_m2();
+  reach.friction_factor =
+      CalcFrictionFactor(speed_m_s * pipe.diameter_m / law.kinematic_viscosity_m2_s, relative_roughness);
   return reach;
 }
 
-/// Leaks have given every pipe more links, and pumps and valves other numbers.
-FlowState MakeFlowState(const Network& network, const LeakyModel& leaky, const HydraulicState& state,
-                        const WaterProperties& water) {
-  FlowState flow;
-  const std::size_t pipes = leaky.pipes.size();
-  for (std::size_t i = 0; i < network.pipes().size(); ++i) {
-    const Pipe& pipe = network.pipes()[i];
-    std::vector<FlowReach> reaches;
-    if (i < pipes) {
-      for (const PipePiece& piece : leaky.pipes[i]) {
-        reaches.push_back(MakeReach(leaky.model, state, piece.link, piece.s_begin_m, piece.s_end_m));
-      }
-    } else {
-      const int link = leaky.model.first_pump() + static_cast<int>(i - pipes);
-      reaches.push_back(MakeReach(leaky.model, state, link, 0, pipe.length_m));
-    }
-    for (FlowReach& reach : reaches) reach.friction_factor = CalcFriction(pipe, reach.flow_m3_s, water);
-    flow.pipes.push_back(std::move(reaches));
+/// The launch itself and the instants after it.
+std::vector<std::int64_t> FindTimes(std::span<const HydraulicStep> steps, std::int64_t launch_s) {
+  if (steps.empty()) throw InputError("the hydraulics have no instant", "network");
+  if (launch_s < steps.front().time_s || launch_s > steps.back().time_s) {
+    throw InputError("the launch is at " + std::to_string(launch_s) + " s of the period; allowed: [" +
+                         std::to_string(steps.front().time_s) + ", " + std::to_string(steps.back().time_s) +
+                         "] s, as far as the hydraulics go",
+                     "mission.launch_s");
   }
-  return flow;
-}
-
-void RequireModerateRoughness(const Network& network) {
-  for (const Pipe& pipe : network.pipes()) {
-    if (pipe.material.roughness_m <= kMaxRelativeRoughness * pipe.diameter_m) continue;
-    throw InputError(
-        "pipe '" + pipe.id + "' has a roughness above 0.05 diameters, as far as friction is known",
-        "network");
+  std::vector<std::int64_t> times{launch_s};
+  for (const HydraulicStep& step : steps) {
+    if (step.time_s > times.back()) times.push_back(step.time_s);
   }
-}
-
-/// Between the flows, and the heads, of two states; statuses and settings are those of the earlier one.
-HydraulicState Blend(const HydraulicState& a, const HydraulicState& b, double u) {
-  HydraulicState state = a;
-  const auto blend = [u](std::vector<double>& x, const std::vector<double>& y) {
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::lerp(x[i], y[i], u);
-  };
-  blend(state.head_m, b.head_m);
-  blend(state.flow_m3_s, b.flow_m3_s);
-  blend(state.fixed_leak_m3_s, b.fixed_leak_m3_s);
-  blend(state.variable_leak_m3_s, b.variable_leak_m3_s);
-  return state;
-}
-
-/// The last step at or before the launch.
-std::size_t FindLaunch(std::span<const HydraulicStep> steps, double launch_s) {
-  std::size_t i = 0;
-  while (i + 1 < steps.size() && static_cast<double>(steps[i + 1].time_s) <= launch_s) ++i;
-  return i;
-}
-
-HydraulicState StateAt(std::span<const HydraulicStep> steps, std::size_t i, double time_s) {
-  if (i + 1 == steps.size()) return steps[i].state;
-  const double begin_s = static_cast<double>(steps[i].time_s),
-               end_s = static_cast<double>(steps[i + 1].time_s);
-  return Blend(steps[i].state, steps[i + 1].state,
-               std::clamp((time_s - begin_s) / (end_s - begin_s), 0.0, 1.0));
-}
-
-LeakState MakeLeakState(const HydraulicModel& model, const HydraulicState& state, int junction,
-                        const WaterProperties& water, double gravity_m_s2) {
-  const auto j = static_cast<std::size_t>(junction);
-  const double pressure_head_m = state.head_m[j] - model.junctions[j].elevation_m;
-  return {state.fixed_leak_m3_s[j] + state.variable_leak_m3_s[j],
-          water.density_kg_m3 * gravity_m_s2 * pressure_head_m};
+  return times;
 }
 
 }  // namespace
 
-NetworkFlow MakeNetworkFlow(const Network& network, const LeakyModel& leaky,
-                            std::span<const HydraulicStep> steps, double launch_s,
-                            const WaterProperties& water, double gravity_m_s2) {
-  Demand(!steps.empty(), "a network was solved at least once");
-  RequireModerateRoughness(network);
-  const std::size_t first = FindLaunch(steps, launch_s);
-  const HydraulicState launch = StateAt(steps, first, launch_s);
-  std::vector<TrueTime> times{TrueTime{}};
-  std::vector<FlowState> states{MakeFlowState(network, leaky, launch, water)};
-  for (std::size_t i = first + 1; i < steps.size(); ++i) {
-    times.push_back(TrueTime(FromSeconds(static_cast<double>(steps[i].time_s) - launch_s)));
-    states.push_back(MakeFlowState(network, leaky, steps[i].state, water));
+FlowTimeline MakeFlowTimeline(const LeakyModel& leaky, std::span<const HydraulicStep> steps,
+                              std::int64_t launch_s, const Network& network, const WaterProperties& water) {
+  const std::vector<std::vector<PipePiece>> pieces = FindReaches(leaky, network);
+  FrictionLaw law = MakeFrictionLaw(network, water);
+  std::vector<double> areas_m2;
+  for (const Pipe& pipe : network.pipes()) areas_m2.push_back(pipe.area_m2());
+  std::vector<TrueTime> times;
+  std::vector<FlowState> states;
+  for (const std::int64_t time_s : FindTimes(steps, launch_s)) {
+    const Moment moment(steps, static_cast<double>(time_s));
+    FlowState state;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      std::vector<FlowReach>& reaches = state.pipes.emplace_back();
+      for (const PipePiece& piece : pieces[i]) {
+        reaches.push_back(
+            MakeReach(leaky.model, piece, moment, network.pipes()[i], law, law.relative_roughness[i]));
+      }
+    }
+    times.push_back(TrueTime(std::chrono::seconds(time_s - launch_s)));
+    states.push_back(std::move(state));
   }
-  std::vector<double> areas;
-  FrictionLaw friction;
-  friction.kinematic_viscosity_m2_s = water.kinematic_viscosity_m2_s;
-  for (const Pipe& pipe : network.pipes()) {
-    areas.push_back(pipe.area_m2());
-    friction.relative_roughness.push_back(pipe.material.roughness_m / pipe.diameter_m);
-  }
+  return FlowTimeline(std::move(areas_m2), std::move(times), std::move(states), std::move(law));
+}
+
+std::vector<LeakState> CalcLeakStates(const LeakyModel& leaky, std::span<const HydraulicStep> steps,
+                                      std::int64_t launch_s, TrueTime t, const WaterProperties& water,
+                                      double gravity_m_s2) {
+  Demand(!steps.empty(), "the hydraulics have an instant");
+  const Moment moment(steps, static_cast<double>(launch_s) + Seconds(t));
   std::vector<LeakState> leaks;
   for (const LeakPlace& place : leaky.leaks) {
-    leaks.push_back(MakeLeakState(leaky.model, launch, place.junction, water, gravity_m_s2));
+    const double pressure_head_m = moment.Head_m(place.junction) - leaky.model.Elevation_m(place.junction);
+    leaks.push_back(
+        {moment.LeakFlow_m3_s(place.junction), water.density_kg_m3 * gravity_m_s2 * pressure_head_m});
   }
-  return {FlowTimeline(std::move(areas), std::move(times), std::move(states), std::move(friction)),
-          std::move(leaks)};
+  return leaks;
 }
 
 }  // namespace piperun::sim

@@ -12,18 +12,24 @@
 
 namespace piperun::sim {
 
-/// The water of a network from the launch of a ball on.
-struct NetworkFlow {
-  FlowTimeline timeline;
-  std::vector<LeakState> leaks;  ///< at the launch, in the order of LeakyModel::leaks
-};
+/// The instants of an extended period as a timeline whose zero is `launch_s` of the period.
+///
+/// Pipe i of `network` is link i of the model the leaks were put into: pipes, pumps, valves in order. Pipes
+/// are cut at their leaks; pumps and valves are one reach. Heads are those of the nodes; in closed links and
+/// at nodes without supply they mean nothing. Friction factors follow from flow, bore and roughness of the
+/// network's pipes by CalcFrictionFactor, whatever head loss law the model has: they tell the shear at the
+/// ball, not the fall of the heads. Bores are the network's, too; where they differ from the model's, flows
+/// are right and velocities are the network's.
+///
+/// Throws InputError: no instant, instants that end before the launch ("mission.launch_s"), a roughness above
+/// 0.05 bores ("network.pipes").
+FlowTimeline MakeFlowTimeline(const LeakyModel& leaky, std::span<const HydraulicStep> steps,
+                              std::int64_t launch_s, const Network& network, const WaterProperties& water);
 
-/// Hydraulic states as flow along the pipes of `network`, whose pipe i is link i of the model before leaks
-/// were inserted: pipes, pumps, valves. Time zero is `launch_s` of the model's period, between two instants
-/// linear. Pipes are cut into reaches where leaks are; friction factors follow from water and bore
-/// (sim/pipe_flow.h), whatever head-loss law the model has. At least one step, at or before the launch.
-NetworkFlow MakeNetworkFlow(const Network& network, const LeakyModel& leaky,
-                            std::span<const HydraulicStep> steps, double launch_s,
-                            const WaterProperties& water, double gravity_m_s2);
+/// Flow and pressure of each leak `t` after the launch, in the order of LeakyModel::leaks: linear between
+/// instants like the timeline.
+std::vector<LeakState> CalcLeakStates(const LeakyModel& leaky, std::span<const HydraulicStep> steps,
+                                      std::int64_t launch_s, TrueTime t, const WaterProperties& water,
+                                      double gravity_m_s2);
 
 }  // namespace piperun::sim
