@@ -139,7 +139,7 @@ class InpPipeline {
       const std::vector<Leak> drawn = DrawLeaks(scenario_, network_, plan, leaks);
       leaks.insert(leaks.end(), drawn.begin(), drawn.end());
     }
-    sim::NetworkFlow flow = Solve(leaks);
+    Flow flow = Solve(leaks);
     std::vector<RouteLeg> plan = PlanAlongWater(scenario_, network_, flow.timeline, stops_);
     std::vector<std::string> notes = model_.notes;
     notes.insert(notes.end(), drawing_.notes.begin(), drawing_.notes.end());
@@ -155,11 +155,21 @@ class InpPipeline {
   }
 
  private:
-  sim::NetworkFlow Solve(const std::vector<Leak>& leaks) const {
+  struct Flow {
+    sim::FlowTimeline timeline;
+    std::vector<LeakState> leaks;
+  };
+  Flow Solve(const std::vector<Leak>& leaks) const {
     const double launch_s = scenario_.flow.launch_time_s;
+    const auto launch = std::llround(launch_s);
+    if (static_cast<double>(launch) != launch_s) {
+      throw InputError(FormatNumber(launch_s) + " s is not allowed; hydraulics count whole seconds",
+                       "flow.launch_time_s");
+    }
     const sim::LeakyModel leaky = sim::InsertLeaks(model_, MakePipeLeaks(leaks));
     const auto steps = SolvePeriod(leaky.model, launch_s + scenario_.mission.time_limit_s);
-    return sim::MakeNetworkFlow(network_, leaky, steps, launch_s, water_, scenario_.gravity_m_s2);
+    return {sim::MakeFlowTimeline(leaky, steps, launch, network_, water_),
+            sim::CalcLeakStates(leaky, steps, launch, TrueTime{}, water_, scenario_.gravity_m_s2)};
   }
 
   std::vector<sim::PipeLeak> MakePipeLeaks(const std::vector<Leak>& leaks) const {

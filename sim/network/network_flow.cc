@@ -109,7 +109,7 @@ std::vector<std::int64_t> FindTimes(std::span<const HydraulicStep> steps, std::i
     throw InputError("the launch is at " + std::to_string(launch_s) + " s of the period; allowed: [" +
                          std::to_string(steps.front().time_s) + ", " + std::to_string(steps.back().time_s) +
                          "] s, as far as the hydraulics go",
-                     "mission.launch_s");
+                     "flow.launch_time_s");
   }
   std::vector<std::int64_t> times{launch_s};
   for (const HydraulicStep& step : steps) {
