@@ -13,5 +13,6 @@ struct EmbeddedFile {
 
 const std::vector<EmbeddedFile>& EmbeddedScenarios();  ///< scenarios/library/*.yaml
 const std::vector<EmbeddedFile>& EmbeddedMaterials();  ///< assets/materials/*.yaml
+const std::vector<EmbeddedFile>& EmbeddedMaterialRules();  ///< assets/materials/rules/*.yaml
 
 }  // namespace piperun::scenarios
