@@ -40,8 +40,7 @@ struct PipeSpec {
   std::string to;
   double diameter_m = 0;  ///< bore
   double wall_thickness_m = 0;
-  double bend_radius_m =
-      0;  ///< of the centreline, at every vertex and where it meets one other pipe; 0: none
+  double bend_radius_m = 0;  ///< of the centreline: at vertices, and where it meets one pipe alone; 0: none
   std::vector<Vector3d> vertices_m;
   WallMaterial material;
   double length_m = 0;          ///< as stated; 0: as drawn

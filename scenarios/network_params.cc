@@ -14,6 +14,24 @@ WallMaterial MakeMaterial(const PipeEntry& entry) {
           wall.poisson_ratio, wall.density_kg_m3,    wall.roughness_m};
 }
 
+PipeSpec MakeSpec(const PipeEntry& entry) {
+  PipeSpec spec;
+  spec.id = entry.id;
+  spec.from = entry.from;
+  spec.to = entry.to;
+  spec.diameter_m = entry.diameter_m;
+  spec.wall_thickness_m = entry.wall_thickness_m;
+  spec.bend_radius_m = entry.bend_radius_m;
+  spec.material = MakeMaterial(entry);
+  spec.length_m = entry.length_m.value_or(0);
+  spec.passable = entry.passable;
+  spec.fit_bends = entry.fit_bends;
+  for (std::size_t i = 0; i < entry.vertices_m.size(); i += 3) {
+    spec.vertices_m.emplace_back(entry.vertices_m[i], entry.vertices_m[i + 1], entry.vertices_m[i + 2]);
+  }
+  return spec;
+}
+
 }  // namespace
 
 void RequirePlainId(const std::string& id, const std::string& key_path) {
@@ -26,20 +44,12 @@ void RequirePlainId(const std::string& id, const std::string& key_path) {
 }
 
 Network MakeNetwork(const NetworkParams& params) {
+  std::vector<NodeSpec> nodes;
+  for (const NodeEntry& entry : params.nodes) nodes.push_back({entry.id, entry.position_m, entry.open_water});
+  std::vector<PipeSpec> pipes;
   for (std::size_t i = 0; i < params.pipes.size(); ++i) {
     RequirePlainId(params.pipes[i].id, "network.pipes[" + std::to_string(i) + "].id");
-  }
-  std::vector<NodeSpec> nodes;
-  for (const NodeEntry& entry : params.nodes) nodes.push_back({entry.id, entry.position_m});
-  std::vector<PipeSpec> pipes;
-  for (const PipeEntry& entry : params.pipes) {
-    PipeSpec spec{
-        entry.id, entry.from,         entry.to, entry.diameter_m, entry.wall_thickness_m, entry.bend_radius_m,
-        {},       MakeMaterial(entry)};
-    for (std::size_t i = 0; i < entry.vertices_m.size(); i += 3) {
-      spec.vertices_m.emplace_back(entry.vertices_m[i], entry.vertices_m[i + 1], entry.vertices_m[i + 2]);
-    }
-    pipes.push_back(std::move(spec));
+    pipes.push_back(MakeSpec(params.pipes[i]));
   }
   return Network(std::move(nodes), pipes);
 }

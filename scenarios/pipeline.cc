@@ -118,6 +118,11 @@ std::vector<RouteLeg> PlanAlongWater(const Scenario& scenario, const Network& ne
   return plan;
 }
 
+MaterialRules ReadRules(const NetworkSource& source) {
+  if (source.material_rules.empty()) return {};
+  return {source.material_rules_text, source.material_rules};
+}
+
 /// An EPANET file made ready to be solved with leaks in it.
 class InpPipeline {
  public:
@@ -126,7 +131,7 @@ class InpPipeline {
         water_(water),
         model_(sim::ReadInp(scenario.network.inp_text, scenario.network.inp)),
         drawing_(DrawNetwork(model_, {scenario.network.map_unit_m, scenario.network.bend_radius_diameters,
-                                      scenario.network.material_rules_text})),
+                                      ReadRules(scenario.network)})),
         network_(MakeNetwork(drawing_.network)),
         stops_(FindStops(scenario.mission, network_)) {
     model_.options.accuracy = std::min(model_.options.accuracy, kAccuracy);

@@ -15,6 +15,7 @@ void NodeEntry::Visit(ParamVisitor& v) {
   v.Text({"id", "Name of the node.", true}, id);
   v.Vector({"position_m", "East, north, up (elevation of the pipe's axis).", true}, Range::Between(-1e6, 1e6),
            position_m);
+  v.Flag({"open_water", "A reservoir or tank: a ball that comes here has left the pipes."}, open_water);
 }
 
 void WallParams::Visit(ParamVisitor& v) {
@@ -39,8 +40,17 @@ void PipeEntry::Visit(ParamVisitor& v) {
   v.Struct({"wall", "Properties of the wall, where they differ from the material's."}, wall);
   v.Table({"vertices_m", "Corners between the nodes, rows of east, north, up."}, Range::Between(-1e6, 1e6), 3,
           vertices_m);
-  v.Number({"bend_radius_m", "Radius of the axis in every corner; must exceed the bore's radius."},
-           Range::NonNegative(), bend_radius_m);
+  v.Number(
+      {"bend_radius_m",
+       "Radius of the axis in every corner, and where two pipes that both give one meet at an angle; must "
+       "exceed the bore's radius. 0: none."},
+      Range::NonNegative(), bend_radius_m);
+  v.NumberOr(
+      {"length_m", "Length as stated; the drawing is stretched to it. As drawn: the line's own length."},
+      {.min = 1e-3, .max = 1e6}, "as_drawn", length_m);
+  v.Flag({"fit_bends", "Bends that do not fit are made tighter or left out instead of refused."}, fit_bends);
+  v.Flag({"passable", "Whether a ball gets through; not through pumps, closed and throttling valves."},
+         passable);
 }
 
 void NetworkParams::Visit(ParamVisitor& v) {

@@ -22,6 +22,7 @@ struct WaterParams {
 struct NodeEntry {
   std::string id;
   Vector3d position_m = Vector3d::Zero();
+  bool open_water = false;
   void Visit(ParamVisitor& v);
 };
 
@@ -46,6 +47,9 @@ struct PipeEntry {
   WallParams wall;
   std::vector<double> vertices_m;  ///< rows of three
   double bend_radius_m = 0;
+  std::optional<double> length_m;  ///< nothing: as drawn
+  bool fit_bends = false;
+  bool passable = true;
   void Visit(ParamVisitor& v);
 };
 

@@ -8,6 +8,7 @@
 #include "scenarios/assemble.h"
 #include "scenarios/embedded.h"
 #include "scenarios/estimator_input.h"
+#include "scenarios/inp_scenario.h"
 #include "scenarios/load.h"
 #include "scenarios/output_file.h"
 #include "scenarios/reference.h"
@@ -36,19 +37,44 @@ void Validate(const std::vector<std::string>& names, const Display& display) {
   }
 }
 
-/// A scenario of the catalogue as a file of the user's own, comments included.
-void New(const std::string& path, const std::string& from) {
+struct NewOptions {
+  std::string path;
+  std::string inp;
+  std::string from;
+  std::string to;
+};
+
+void WriteNew(const std::string& path, std::string_view text) {
   if (std::filesystem::exists(path)) {
     throw InputError("this file exists already; choose another name", "", path);
   }
+  scenarios::WriteTextFile(path, text);
+  fmt::print("Wrote {}; run it with: piperun run {} --out runs/{}\n", path, path,
+             std::filesystem::path(path).stem().string());
+}
+
+/// A scenario of the catalogue as a file of the user's own, comments included.
+void CopyFromCatalogue(const NewOptions& options) {
+  if (options.path.empty()) throw InputError("name the file to write", "FILE");
+  if (!options.to.empty()) throw InputError("a node to arrive at goes with --inp", "--to");
+  const std::string from = options.from.empty() ? "quickstart" : options.from;
   const auto& catalogue = scenarios::EmbeddedScenarios();
   const auto found =
       std::find_if(catalogue.begin(), catalogue.end(), [&](const auto& f) { return f.name == from; });
   if (found == catalogue.end())
     throw InputError("there is no scenario '" + from + "' in the catalogue", "--from");
-  scenarios::WriteTextFile(path, found->text);
-  fmt::print("Wrote {}; run it with: piperun run {} --out runs/{}\n", path, path,
-             std::filesystem::path(path).stem().string());
+  WriteNew(options.path, found->text);
+}
+
+/// A scenario on an EPANET file; it is written beside the user, called like the file.
+void StartFromInp(const NewOptions& options) {
+  if (options.from.empty()) throw InputError("name the node where the ball goes in", "--from");
+  if (options.to.empty()) throw InputError("name the node where it is taken out", "--to");
+  auto plan = scenarios::PlanInpScenario(options.inp, options.from, options.to);
+  const std::string path = options.path.empty() ? plan.name + ".yaml" : options.path;
+  plan.inp_path =
+      std::filesystem::proximate(options.inp, std::filesystem::absolute(path).parent_path()).string();
+  WriteNew(path, scenarios::MakeInpScenario(plan));
 }
 
 }  // namespace
@@ -71,12 +97,18 @@ void AddScenarioCommand(CLI::App& app, Display& display, int&) {
   validate->add_option("SCENARIO", *validated, "Scenario files or names")->required();
   validate->callback([validated, &display] { Validate(*validated, display); });
 
-  auto path = std::make_shared<std::string>();
-  auto from = std::make_shared<std::string>("quickstart");
+  auto options = std::make_shared<NewOptions>();
   CLI::App* create = command->add_subcommand("new", "Write a scenario file to start from");
-  create->add_option("FILE", *path, "File to write")->required();
-  create->add_option("--from", *from, "Scenario of the catalogue to copy")->capture_default_str();
-  create->callback([path, from] { New(*path, *from); });
+  create->add_option("FILE", options->path, "File to write; with --inp by default called like that file");
+  create->add_option("--inp", options->inp, "EPANET file to make a scenario on");
+  create->add_option("--from", options->from,
+                     "With --inp: node where the ball goes in. Else: scenario of the catalogue to copy "
+                     "(quickstart)");
+  create->add_option("--to", options->to, "With --inp: node where the ball is taken out");
+  create->callback([options] {
+    if (options->inp.empty()) return CopyFromCatalogue(*options);
+    StartFromInp(*options);
+  });
 }
 
 }  // namespace piperun::tools
