@@ -8,6 +8,8 @@
 
 #include "sim/hydraulics.h"
 #include "sim/motion.h"
+#include "sim/network/simulation.h"
+#include "tests/support/networks.h"
 #include "tests/support/pipes.h"
 
 namespace {
@@ -40,6 +42,17 @@ TEST(BallInPipe, StepsWithoutAllocating) {
     EXPECT_GT(before, at_first) << "the counter counts";
     while (motion->status() == MotionStatus::kRunning) motion->Step();
     EXPECT_EQ(allocations - before, 0);
+  }
+}
+
+TEST(HydraulicSolver, SolvesWithoutAllocating) {
+  for (const char* name : {"town.inp", "valves.inp", "leakage.inp", "laws_dw_cmh.inp"}) {
+    const HydraulicModel model = piperun::testing::ReadOwnNetwork(name);
+    HydraulicSimulation simulation(model);
+    const long before = allocations;
+    const bool converged = simulation.Solve().converged();
+    EXPECT_EQ(allocations - before, 0) << name;
+    EXPECT_TRUE(converged) << name;
   }
 }
 

@@ -132,9 +132,10 @@ std::string ReachableText(const HydraulicModel& model, const sim::WaterWays& way
                on_main == main_flow.points.end() ? "-" : Clock(on_main->time_s)});
   }
   const std::size_t count = reached.size() - 1;
+  if (count == 0) return "";  // the way of the greatest flow has said why
   return fmt::format("\nFrom '{}' the water comes by {}; fastest ways, at the water's bulk speed\n",
                      model.NodeId(from), Counted(count, "node")) +
-         (count > 0 ? table.Text("nodes") : "");
+         table.Text("nodes");
 }
 
 }  // namespace
