@@ -96,17 +96,35 @@ double JointLip::CalcSlope(std::span<const BoreMember> members, const Vector3d& 
   return (point->q - p_N).dot(point->tangent);
 }
 
-JointLip::Minimum JointLip::FindMinimum(std::span<const BoreMember> members, const Vector3d& p_N,
-                                        int sample) const {
+/// A stretch of the rim on which the distance falls first and rises at its end, on the side of a sample that
+/// is nearer than its neighbours. Two minima within a few degrees of each other count as one.
+std::optional<JointLip::Bracket> JointLip::FindBracket(std::span<const BoreMember> members,
+                                                       const Vector3d& p_N, int sample) const {
   const double middle = SampleAngle(sample), step = SampleAngle(1);
   const double at_middle = CalcSlope(members, p_N, middle, true);
-  const bool upper = at_middle < 0;  // the half in which the minimum lies
-  const double end = middle + (upper ? step : -step);
-  const double at_end = CalcSlope(members, p_N, end, upper);
-  if (upper ? at_end <= 0 : at_end >= 0) return {Eval(members, middle), true};  // a point of the rim it is
-  const auto slope = [&](double phi) { return CalcSlope(members, p_N, phi, upper); };
-  const SignChange at = upper ? FindSignChange(slope, middle, end, at_middle, at_end)
-                              : FindSignChange(slope, end, middle, at_end, at_middle);
+  const bool upper = at_middle < 0;
+  Bracket near{middle, middle, at_middle, at_middle};
+  const int pieces = 4;  // one is enough but where three extrema crowd between two samples
+  const double far = CalcSlope(members, p_N, middle + (upper ? step : -step), upper);
+  if (upper && far > 0) return Bracket{middle, middle + step, at_middle, far};
+  if (!upper && far < 0) return Bracket{middle - step, middle, far, at_middle};
+  for (int i = 1; i < pieces; ++i) {
+    const double phi = middle + (upper ? step : -step) * i / pieces;
+    const double slope = CalcSlope(members, p_N, phi, upper);
+    (upper ? near.high : near.low) = phi;
+    (upper ? near.at_high : near.at_low) = slope;
+    if (upper ? slope > 0 : slope < 0) return near;
+  }
+  return std::nullopt;
+}
+
+JointLip::Minimum JointLip::FindMinimum(std::span<const BoreMember> members, const Vector3d& p_N,
+                                        int sample) const {
+  const auto bracket = FindBracket(members, p_N, sample);
+  if (!bracket) return {Eval(members, SampleAngle(sample)), false};
+  const bool upper = bracket->low == SampleAngle(sample);
+  const SignChange at = FindSignChange([&](double phi) { return CalcSlope(members, p_N, phi, upper); },
+                                       bracket->low, bracket->high, bracket->at_low, bracket->at_high);
   const auto point = Eval(members, at.below), above = Eval(members, at.above);
   if (!point || !above) return {};
   const Vector3d from_p = point->q - p_N;

@@ -48,7 +48,13 @@ class JointLip {
     std::optional<Point> point;
     bool corner = false;
   };
+  struct Bracket {
+    double low = 0, high = 0;
+    double at_low = 0, at_high = 0;
+  };
   std::optional<Point> Eval(std::span<const BoreMember> members, double phi) const;
+  std::optional<Bracket> FindBracket(std::span<const BoreMember> members, const Vector3d& p_N,
+                                     int sample) const;
   Minimum FindMinimum(std::span<const BoreMember> members, const Vector3d& p_N, int sample) const;
   void AddFoot(const Vector3d& p_N, const Minimum& minimum, WallFeet& feet) const;
   void AddRing(const Vector3d& p_N, int nearest, WallFeet& feet) const;

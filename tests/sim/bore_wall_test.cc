@@ -231,7 +231,7 @@ void ExpectContinuousNormals(const std::vector<StarArm>& arms, const Vector3d& b
     const Vector3d p = begin + (end - begin) * i / steps;
     const std::vector<WallFoot> feet = FindFeet(star, wall, FindArm(arms, p), p, 0.1);
     ASSERT_FALSE(feet.empty());
-    if (i > 0) {
+    if (i > 0 && last.distance_m < 0.04) {  // the tubes' axes, where normals turn at once, are farther
       double turn = 1e9;
       for (const WallFoot& foot : feet) turn = std::min(turn, (foot.normal - last.normal).norm());
       largest = std::max(largest, turn * last.distance_m / step_m);
@@ -250,7 +250,8 @@ TEST(BoreWall, NormalsTurnWithoutAJumpOverARim) {
   for (const double radius_m : {0.075, 0.06, 0.035}) {
     for (const double azimuth_deg : {90.0, 60.0, 40.0}) {
       SCOPED_TRACE(std::to_string(radius_m) + " at " + std::to_string(azimuth_deg));
-      ExpectContinuousNormals(arms(radius_m, azimuth_deg), {-0.25, 0.044, 0}, {0.25, 0.044, 0});
+      // off the plane of symmetry, in which one nearest point turns into two with all its speed
+      ExpectContinuousNormals(arms(radius_m, azimuth_deg), {-0.25, 0.044, 0.003}, {0.25, 0.044, 0.005});
       ExpectContinuousNormals(arms(radius_m, azimuth_deg), {-0.25, 0.044, 0.013}, {0.25, 0.044, 0.013});
       ExpectContinuousNormals(arms(radius_m, azimuth_deg), {-0.2, 0.01, -0.04}, {0.2, 0.05, -0.01});
     }
@@ -288,7 +289,7 @@ double BruteReducerDistance(double wide_m, double narrow_m, double cone_m, doubl
     const double share = std::clamp((at - 1) / cone_m, 0.0, 1.0);
     best = std::min(best, std::hypot(at - x, wide_m + share * (narrow_m - wide_m) - rho));
   }
-  return best;
+  return std::min(best, std::hypot(1 + cone_m - x, narrow_m - rho));
 }
 
 TEST(BoreWall, DistanceInAReducerIsThatToTheNearestWall) {
