@@ -204,12 +204,12 @@ BoreWall::Landing BoreWall::Land(const NetworkSpot& spot, const Vector3d& p_F, c
 }
 
 double BoreWall::PredictDistance(const NetworkSpot& spot, const Vector3d& p_F, const WallFoot& foot,
-                                 const Vector3d& step_F, double limit_m) const {
+                                 const Vector3d& step_F) const {
   if (foot.kind == WallFoot::Kind::kPlane) return foot.distance_m;  // the step is along it
   if (foot.kind == WallFoot::Kind::kPoint) return std::hypot(foot.distance_m, step_F.norm());
   Landing to = Land(spot, p_F, step_F, foot.normal);
   if (&FindPiece(to.spot) == &FindPiece(spot)) to.spot.s_m += CalcAdvance_m(FindPiece(spot), p_F, to.p_F);
-  const WallFeet feet = FindFeet(to.spot, to.p_F, -to.normal_F, limit_m);
+  const WallFeet feet = FindFeet(to.spot, to.p_F, -to.normal_F, foot.distance_m + step_F.norm());
   const WallFoot* continued = FindContinued(feet, to.normal_F);
   return continued ? continued->distance_m : foot.distance_m;
 }
@@ -243,7 +243,7 @@ WallContacts BoreWall::Probe(const NetworkSpot& spot, const Vector3d& p_F, const
     if (foot.distance_m > window_m) continue;
     const double v_n = v_F.dot(foot.normal);
     const Vector3d step_F = (v_F - v_n * foot.normal) * dt_s;
-    const double gap_m = PredictDistance(spot, p_F, foot, step_F, window_m) - radius_m;
+    const double gap_m = PredictDistance(spot, p_F, foot, step_F) - radius_m;
     if (gap_m + v_n * dt_s < kContactRange_m) contacts.Add({foot.normal, gap_m});
   }
   return contacts;

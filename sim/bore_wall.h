@@ -118,7 +118,7 @@ class BoreWall {
   Landing Land(const NetworkSpot& spot, const Vector3d& p_F, const Vector3d& step_F,
                const Vector3d& normal_F) const;
   double PredictDistance(const NetworkSpot& spot, const Vector3d& p_F, const WallFoot& foot,
-                         const Vector3d& step_F, double limit_m) const;
+                         const Vector3d& step_F) const;
   WallContacts ProbeTube(const NetworkSpot& spot, const Vector3d& p_F, const Vector3d& v_F, double radius_m,
                          double dt_s) const;
 

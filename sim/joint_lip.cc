@@ -14,35 +14,53 @@ constexpr double kConeSlack_m = 1e-10;    // walls' and edges' feet overlap by t
 constexpr double kPlateau_m = 1e-9;       // as far all around: no point is nearest
 constexpr double kPerpendicular = 1e-7;   // cosine, at a minimum on a smooth stretch of the rim
 constexpr double kContinuous_m = 1e-7;    // the rim's two sides of a corner
-constexpr double kAngleStep_rad = 1e-14;  // of the last correction
+constexpr double kAngleStep_rad = 1e-13;  // of the last correction
 constexpr int kMaxCorrections = 100;
 
 double SampleAngle(int k) { return 2 * std::numbers::pi / JointLip::kSamples * k; }
 
+struct Sample {
+  double x = 0;
+  double f = 0;
+};
+
 /// Where a function changes sign from - to +: a zero, or a jump across it.
 struct SignChange {
-  double below = 0;  ///< last argument with a negative value
+  double below = 0;
   double above = 0;
 };
 
-/// Regula falsi after Illinois; every third step halves.
+SignChange MakeSignChange(const Sample& a, const Sample& b) {
+  return a.f < 0 ? SignChange{a.x, b.x} : SignChange{b.x, a.x};
+}
+
+/// Where between a and b the inverse parabola through three samples has its zero, as a share; half way where
+/// the parabola is not to be trusted.
+double CalcShare(const Sample& a, const Sample& b, const Sample& c) {
+  const double xi = (a.x - b.x) / (c.x - b.x), phi = (a.f - b.f) / (c.f - b.f);
+  if (phi * phi >= xi || (1 - phi) * (1 - phi) >= 1 - xi) return 0.5;
+  return a.f / (b.f - a.f) * c.f / (b.f - c.f) +
+         (c.x - a.x) / (b.x - a.x) * a.f / (c.f - a.f) * b.f / (c.f - b.f);
+}
+
+/// Chandrupatla, "A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function
+/// without using derivatives", Adv. Eng. Softw. 28, 145 (1997). Between samples of unlike sign.
 template <class F>
-SignChange FindSignChange(const F& f, double low, double high, double f_low, double f_high) {
-  for (int i = 0; i < kMaxCorrections && high - low > kAngleStep_rad; ++i) {
-    const double x = i % 3 == 2 ? 0.5 * (low + high) : low - f_low * (high - low) / (f_high - f_low);
-    const double value = f(x);
-    if (value == 0) return {x, x};
-    if (value < 0) {
-      low = x;
-      f_low = value;
-      f_high *= 0.5;
-    } else {
-      high = x;
-      f_high = value;
-      f_low *= 0.5;
-    }
+SignChange FindSignChange(const F& f, Sample a, Sample b) {
+  double share = 0.5;
+  for (int i = 0; i < kMaxCorrections; ++i) {
+    const double x = a.x + share * (b.x - a.x);
+    const Sample next{x, f(x)};
+    if (next.f == 0) return {x, x};
+    const bool beside_a = (next.f < 0) == (a.f < 0);
+    const Sample c = beside_a ? a : b;
+    if (!beside_a) b = a;
+    a = next;
+    const double least = kAngleStep_rad / std::abs(b.x - a.x);
+    if (least > 0.5) break;
+    share = std::clamp(CalcShare(a, b, c), least, 1 - least);
   }
-  return {low, high};
+  return MakeSignChange(a, b);
 }
 
 }  // namespace
@@ -96,24 +114,16 @@ double JointLip::CalcSlope(std::span<const BoreMember> members, const Vector3d& 
   return (point->q - p_N).dot(point->tangent);
 }
 
-/// A stretch of the rim on which the distance falls first and rises at its end, on the side of a sample that
-/// is nearer than its neighbours. Two minima within a few degrees of each other count as one.
+/// The stretch of the rim beside a sample, nearer than its neighbours, in which the least distance lies:
+/// the slope rises through zero. Two minima within a few degrees may count as one.
 std::optional<JointLip::Bracket> JointLip::FindBracket(std::span<const BoreMember> members,
                                                        const Vector3d& p_N, int sample) const {
-  const double middle = SampleAngle(sample), step = SampleAngle(1);
-  const double at_middle = CalcSlope(members, p_N, middle, true);
+  const double middle = SampleAngle(sample), at_middle = CalcSlope(members, p_N, middle, true);
   const bool upper = at_middle < 0;
-  Bracket near{middle, middle, at_middle, at_middle};
-  const int pieces = 4;  // one is enough but where three extrema crowd between two samples
-  const double far = CalcSlope(members, p_N, middle + (upper ? step : -step), upper);
-  if (upper && far > 0) return Bracket{middle, middle + step, at_middle, far};
-  if (!upper && far < 0) return Bracket{middle - step, middle, far, at_middle};
-  for (int i = 1; i < pieces; ++i) {
-    const double phi = middle + (upper ? step : -step) * i / pieces;
+  for (const double share : {1.0, 0.25, 0.5, 0.75}) {  // the first does, but where three extrema crowd
+    const double phi = middle + (upper ? share : -share) * SampleAngle(1);
     const double slope = CalcSlope(members, p_N, phi, upper);
-    (upper ? near.high : near.low) = phi;
-    (upper ? near.at_high : near.at_low) = slope;
-    if (upper ? slope > 0 : slope < 0) return near;
+    if (upper ? slope > 0 : slope < 0) return Bracket{middle, at_middle, phi, slope};
   }
   return std::nullopt;
 }
@@ -122,9 +132,10 @@ JointLip::Minimum JointLip::FindMinimum(std::span<const BoreMember> members, con
                                         int sample) const {
   const auto bracket = FindBracket(members, p_N, sample);
   if (!bracket) return {Eval(members, SampleAngle(sample)), false};
-  const bool upper = bracket->low == SampleAngle(sample);
-  const SignChange at = FindSignChange([&](double phi) { return CalcSlope(members, p_N, phi, upper); },
-                                       bracket->low, bracket->high, bracket->at_low, bracket->at_high);
+  const bool upper = bracket->at_middle < 0;
+  const SignChange at =
+      FindSignChange([&](double phi) { return CalcSlope(members, p_N, phi, upper); },
+                     {bracket->middle, bracket->at_middle}, {bracket->beside, bracket->at_beside});
   const auto point = Eval(members, at.below), above = Eval(members, at.above);
   if (!point || !above) return {};
   const Vector3d from_p = point->q - p_N;

@@ -49,8 +49,8 @@ class JointLip {
     bool corner = false;
   };
   struct Bracket {
-    double low = 0, high = 0;
-    double at_low = 0, at_high = 0;
+    double middle = 0, at_middle = 0;  ///< angle of the sample, slope there
+    double beside = 0, at_beside = 0;
   };
   std::optional<Point> Eval(std::span<const BoreMember> members, double phi) const;
   std::optional<Bracket> FindBracket(std::span<const BoreMember> members, const Vector3d& p_N,
