@@ -10,21 +10,15 @@
 namespace piperun {
 namespace {
 
-constexpr double kMinEdge_m = 1e-6;
 constexpr double kMinTurn_rad = 1e-9;    // below this a vertex is no corner
 constexpr double kMinReturn_rad = 1e-3;  // this close to half a turn there is no arc
 constexpr double kSlack_m = 1e-9;        // arcs may meet end to end within rounding
 
-/// One straight of a polyline, vertex to vertex.
-struct Edge {
-  Vector3d tangent;
-  double length_m = 0;
-};
-
-/// What one vertex of a polyline costs its two edges.
+/// A vertex of a polyline with what its bend costs the straights beside it.
 struct Corner {
-  double turn_rad = 0;
-  double tangent_length_m = 0;  // R tan(turn/2): from the vertex to where the arc begins
+  double turn_rad = 0;          // of the arc in this line
+  double tangent_length_m = 0;  // from the vertex to where the arc begins
+  double radius_m = 0;
 };
 
 CentrelinePiece MakeLine(const Vector3d& p, const Vector3d& t, double length_m) {
@@ -43,27 +37,8 @@ CentrelinePiece MakeArc(const Vector3d& p, const Vector3d& t_in, const Vector3d&
   return piece;
 }
 
-std::string CornerName(std::size_t i, const Vector3d& p) {
-  return "corner " + std::to_string(i) + " at [" + FormatNumber(p.x()) + ", " + FormatNumber(p.y()) + ", " +
-         FormatNumber(p.z()) + "]";
-}
-
-std::vector<Edge> MakeEdges(const std::vector<Vector3d>& vertices) {
-  std::vector<Edge> edges;
-  for (std::size_t i = 0; i + 1 < vertices.size(); ++i) {
-    const Vector3d d = vertices[i + 1] - vertices[i];
-    const double length_m = d.norm();
-    if (!(length_m > kMinEdge_m)) {
-      throw InputError("two neighbouring vertices coincide (" + CornerName(i + 1, vertices[i + 1]) +
-                       "); a straight needs a length above " + FormatNumber(kMinEdge_m) + " m");
-    }
-    edges.push_back({d / length_m, length_m});
-  }
-  return edges;
-}
-
 Corner MakeCorner(const Vector3d& t_in, const Vector3d& t_out, double radius_m, const std::string& name) {
-  const double turn_rad = std::atan2(t_in.cross(t_out).norm(), t_in.dot(t_out));
+  const double turn_rad = CalcTurn_rad(t_in, t_out);
   if (turn_rad < kMinTurn_rad) return {};
   if (turn_rad > std::numbers::pi - kMinReturn_rad)
     throw InputError("the line turns back on itself at " + name);
@@ -71,27 +46,42 @@ Corner MakeCorner(const Vector3d& t_in, const Vector3d& t_out, double radius_m, 
     throw InputError(FormatNumber(radius_m) + " m is not allowed as radius of the bend at " + name +
                      "; it must be > 0");
   }
-  return {turn_rad, radius_m * std::tan(turn_rad / 2)};
+  return {turn_rad, radius_m * std::tan(turn_rad / 2), radius_m};
 }
 
-/// The corners of a polyline; its first and last vertex cost nothing.
-std::vector<Corner> MakeCorners(const std::vector<Vector3d>& vertices, const std::vector<Edge>& edges,
-                                double radius_m) {
-  std::vector<Corner> corners(vertices.size());
-  for (std::size_t i = 1; i < edges.size(); ++i) {
-    corners[i] = MakeCorner(edges[i - 1].tangent, edges[i].tangent, radius_m, CornerName(i, vertices[i]));
+Corner MakeCorner(const EndBend& bend) { return {bend.turn_rad, bend.tangent_length_m, bend.radius_m}; }
+
+std::vector<Corner> MakeCorners(const Polyline& line, const LineBends& bends) {
+  const std::size_t last = line.straights.size();
+  Demand(bends.radius_m.size() + 1 == last, "every inner vertex has a radius");
+  std::vector<Corner> corners{MakeCorner(bends.begin)};
+  for (std::size_t i = 1; i < last; ++i) {
+    corners.push_back(MakeCorner(line.straights[i - 1].tangent_W, line.straights[i].tangent_W,
+                                 bends.radius_m[i - 1], CornerName(i, line.vertices_W[i])));
   }
+  corners.push_back(MakeCorner(bends.end));
   return corners;
 }
 
 double FloorToMillimetre(double length_m) { return std::floor(1000 * length_m) / 1000; }
 
-[[noreturn]] void RefuseBend(const std::string& corner, double edge_length_m, double needed_m,
-                             double radius_m) {
-  throw InputError("a bend of radius " + FormatNumber(radius_m) + " m does not fit at " + corner +
-                   ": the straight beside it is " + FormatNumber(edge_length_m) +
-                   " m long; the largest radius that fits there is " +
-                   FormatNumber(FloorToMillimetre(radius_m * edge_length_m / needed_m)) + " m");
+/// The bends at the two ends of straight `i` do not fit on it.
+[[noreturn]] void RefuseBend(const Polyline& line, const std::vector<Corner>& corners, std::size_t i) {
+  const std::size_t at = corners[i + 1].tangent_length_m > 0 ? i + 1 : i;
+  const double length_m = line.straights[i].length_m, radius_m = corners[at].radius_m;
+  const double needed_m = corners[i].tangent_length_m + corners[i + 1].tangent_length_m;
+  throw InputError("a bend of radius " + FormatNumber(radius_m) + " m does not fit at " +
+                   CornerName(at, line.vertices_W[at]) + ": the straight beside it is " +
+                   FormatNumber(length_m) + " m long; the largest radius that fits there is " +
+                   FormatNumber(FloorToMillimetre(radius_m * length_m / needed_m)) + " m");
+}
+
+/// What the bends leave of straight `i`; down to -kSlack_m.
+double CalcFree_m(const Polyline& line, const std::vector<Corner>& corners, std::size_t i) {
+  const double needed_m = corners[i].tangent_length_m + corners[i + 1].tangent_length_m;
+  const double free_m = line.straights[i].length_m - needed_m;
+  if (free_m < -kSlack_m) RefuseBend(line, corners, i);
+  return free_m;
 }
 
 void Append(std::vector<CentrelinePiece>& pieces, CentrelinePiece piece) {
@@ -136,29 +126,58 @@ CentrelinePiece Reversed(const CentrelinePiece& piece, double s_begin_m) {
   return r;
 }
 
-std::vector<CentrelinePiece> RoundCorners(const std::vector<Vector3d>& vertices, double bend_radius_m) {
-  Demand(vertices.size() >= 2, "a polyline has at least two vertices");
-  const std::vector<Edge> edges = MakeEdges(vertices);
-  const std::vector<Corner> corners = MakeCorners(vertices, edges, bend_radius_m);
+std::vector<CentrelinePiece> RoundCorners(const Polyline& line, const LineBends& bends) {
+  const std::vector<Corner> corners = MakeCorners(line, bends);
+  const std::vector<Straight>& straights = line.straights;
   std::vector<CentrelinePiece> pieces;
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const Edge& edge = edges[i];
-    const Corner &begin = corners[i], &end = corners[i + 1];
-    const double needed_m = begin.tangent_length_m + end.tangent_length_m;
-    const double free_m = edge.length_m - needed_m;
-    if (free_m < -kSlack_m) {
-      const std::size_t at = i + 1 < edges.size() ? i + 1 : i;
-      RefuseBend(CornerName(at, vertices[at]), edge.length_m, needed_m, bend_radius_m);
-    }
+  const auto turn = [&](const Vector3d& p, const Vector3d& t_in, const Vector3d& t_out,
+                        const Corner& corner) {
+    return MakeArc(p, t_in, t_out, corner.turn_rad, corner.radius_m);
+  };
+  if (const Corner& begin = corners.front(); begin.turn_rad > 0) {
+    // walked backwards, it begins on the straight
+    const Vector3d& t = straights.front().tangent_W;
+    const Vector3d p = line.vertices_W.front() + begin.tangent_length_m * t;
+    Append(pieces, Reversed(turn(p, -t, -bends.begin.tangent_W, begin), 0));
+  }
+  for (std::size_t i = 0; i < straights.size(); ++i) {
+    const Vector3d& t = straights[i].tangent_W;
+    const Corner& end = corners[i + 1];
+    const double free_m = CalcFree_m(line, corners, i);
     if (free_m > kSlack_m) {
-      Append(pieces, MakeLine(vertices[i] + begin.tangent_length_m * edge.tangent, edge.tangent, free_m));
+      Append(pieces, MakeLine(line.vertices_W[i] + corners[i].tangent_length_m * t, t, free_m));
     }
-    if (end.turn_rad > 0) {
-      const Vector3d p_begin = vertices[i + 1] - end.tangent_length_m * edge.tangent;
-      Append(pieces, MakeArc(p_begin, edge.tangent, edges[i + 1].tangent, end.turn_rad, bend_radius_m));
-    }
+    if (end.turn_rad == 0) continue;
+    const bool last = i + 1 == straights.size();
+    const Vector3d& t_out = last ? bends.end.tangent_W : straights[i + 1].tangent_W;
+    Append(pieces, turn(line.vertices_W[i + 1] - end.tangent_length_m * t, t, t_out, end));
   }
   return pieces;
+}
+
+std::vector<CentrelinePiece> RoundCorners(const std::vector<Vector3d>& vertices, double bend_radius_m) {
+  const Polyline line = MakePolyline(vertices);
+  return RoundCorners(line, {std::vector<double>(vertices.size() - 2, bend_radius_m), {}, {}});
+}
+
+Polyline FitStraights(const Polyline& line, const LineBends& bends, double length_m) {
+  const std::vector<Corner> corners = MakeCorners(line, bends);
+  double arcs_m = 0, free_m = 0;
+  for (const Corner& corner : corners) arcs_m += corner.radius_m * corner.turn_rad;
+  for (std::size_t i = 0; i < line.straights.size(); ++i) free_m += CalcFree_m(line, corners, i);
+  if (!(length_m > arcs_m && free_m > kSlack_m)) {
+    throw InputError("its bends of together " + FormatNumber(arcs_m) + " m leave no straight of the stated " +
+                     FormatNumber(length_m) + " m; give smaller bend radii");
+  }
+  const double k = (length_m - arcs_m) / free_m;
+  Polyline fitted = line;
+  for (std::size_t i = 0; i < line.straights.size(); ++i) {
+    const double bends_m = corners[i].tangent_length_m + corners[i + 1].tangent_length_m;
+    Straight& straight = fitted.straights[i];
+    straight.length_m = bends_m + k * (straight.length_m - bends_m);
+    fitted.vertices_W[i + 1] = fitted.vertices_W[i] + straight.length_m * straight.tangent_W;
+  }
+  return fitted;
 }
 
 }  // namespace piperun

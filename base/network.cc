@@ -7,15 +7,17 @@
 
 #include "base/check.h"
 #include "base/number.h"
+#include "base/pipe_layout.h"
 
 namespace piperun {
 namespace {
 
-template <class T>
-std::optional<int> FindId(const std::vector<T>& items, std::string_view id) {
-  const auto found = std::find_if(items.begin(), items.end(), [&](const T& item) { return item.id == id; });
-  if (found == items.end()) return std::nullopt;
-  return static_cast<int>(found - items.begin());
+using IdIndex = std::map<std::string, int, std::less<>>;
+
+std::optional<int> FindId(const IdIndex& index, std::string_view id) {
+  const auto found = index.find(id);
+  if (found == index.end()) return std::nullopt;
+  return found->second;
 }
 
 std::string ItemKey(const std::string& list, std::size_t i) { return list + "[" + std::to_string(i) + "]"; }
@@ -30,64 +32,67 @@ void RequireFinite(const Vector3d& p, const std::string& key) {
 }
 
 void RequireBendWiderThanBore(const PipeSpec& spec, const std::string& key) {
+  if (!spec.vertices_m.empty()) RequirePositive(spec.bend_radius_m, key);
   const double bore_radius_m = 0.5 * spec.diameter_m;
-  if (spec.vertices_m.empty()) return;
-  RequirePositive(spec.bend_radius_m, key);
-  if (spec.bend_radius_m > bore_radius_m) return;
+  if (spec.bend_radius_m == 0 || (spec.bend_radius_m > bore_radius_m && std::isfinite(spec.bend_radius_m))) {
+    return;
+  }
   throw InputError(FormatNumber(spec.bend_radius_m) +
                        " m is too tight: a bend's radius must exceed the bore radius " +
                        FormatNumber(bore_radius_m) + " m",
                    key);
 }
 
-int ResolveNode(const std::vector<NodeSpec>& nodes, const std::string& id, const std::string& key) {
+int ResolveNode(const IdIndex& nodes, const std::string& id, const std::string& key) {
   const auto node = FindId(nodes, id);
   if (!node) throw InputError("there is no node '" + id + "'", key);
   return *node;
 }
 
-/// The polyline from -> vertices -> to with its corners rounded.
-std::vector<CentrelinePiece> BuildCentreline(const Vector3d& p_from, const Vector3d& p_to,
-                                             const PipeSpec& spec, const std::string& key) {
+PipeNodes ResolveNodes(const IdIndex& nodes, const PipeSpec& spec, const std::string& key) {
+  const PipeNodes at{ResolveNode(nodes, spec.from, key + ".from"), ResolveNode(nodes, spec.to, key + ".to")};
+  if (at.from != at.to) return at;
+  throw InputError("the pipe leads from '" + spec.from + "' to itself; give its far end a node of its own",
+                   key + ".to");
+}
+
+void RequireValid(const PipeSpec& spec, const std::string& key) {
+  RequirePositive(spec.diameter_m, key + ".diameter_m");
+  RequirePositive(spec.wall_thickness_m, key + ".wall_thickness_m");
+  if (spec.length_m != 0) RequirePositive(spec.length_m, key + ".length_m");
+  RequireBendWiderThanBore(spec, key + ".bend_radius_m");
   for (std::size_t i = 0; i < spec.vertices_m.size(); ++i) {
     RequireFinite(spec.vertices_m[i], ItemKey(key + ".vertices_m", i));
   }
-  std::vector<Vector3d> line{p_from};
-  line.insert(line.end(), spec.vertices_m.begin(), spec.vertices_m.end());
-  line.push_back(p_to);
-  try {
-    return RoundCorners(line, spec.bend_radius_m);
-  } catch (const InputError& e) {
-    throw InputError(e.problem(), key);
-  }
 }
 
-Pipe BuildPipe(const std::vector<NodeSpec>& nodes, const PipeSpec& spec, const std::string& key) {
+Pipe MakePipe(const PipeSpec& spec, PipeNodes at, PipeCourse course) {
   Pipe pipe;
   pipe.id = spec.id;
-  pipe.from = ResolveNode(nodes, spec.from, key + ".from");
-  pipe.to = ResolveNode(nodes, spec.to, key + ".to");
-  RequirePositive(spec.diameter_m, key + ".diameter_m");
-  RequirePositive(spec.wall_thickness_m, key + ".wall_thickness_m");
-  RequireBendWiderThanBore(spec, key + ".bend_radius_m");
+  pipe.from = at.from;
+  pipe.to = at.to;
   pipe.diameter_m = spec.diameter_m;
   pipe.wall_thickness_m = spec.wall_thickness_m;
   pipe.material = spec.material;
-  pipe.centreline = BuildCentreline(nodes[static_cast<std::size_t>(pipe.from)].position_m,
-                                    nodes[static_cast<std::size_t>(pipe.to)].position_m, spec, key);
+  pipe.centreline = std::move(course.centreline);
   pipe.length_m = pipe.centreline.back().s_end_m();
+  pipe.cone_from = course.cone_from;
+  pipe.cone_to = course.cone_to;
+  pipe.passable = spec.passable;
   return pipe;
 }
 
 template <class T>
-void RequireUniqueIds(const std::vector<T>& items, const std::string& list) {
+IdIndex IndexIds(const std::vector<T>& items, const std::string& list) {
+  IdIndex index;
   for (std::size_t i = 0; i < items.size(); ++i) {
     const std::string key = ItemKey(list, i) + ".id";
     if (items[i].id.empty()) throw InputError("an id must not be empty", key);
-    if (FindId(items, items[i].id) != static_cast<int>(i)) {
+    if (!index.emplace(items[i].id, static_cast<int>(i)).second) {
       throw InputError("'" + items[i].id + "' is used twice; ids must be unique", key);
     }
   }
+  return index;
 }
 
 }  // namespace
@@ -118,24 +123,27 @@ Vector3d Pipe::Inward(bool at_to) const {
 
 Network::Network(std::vector<NodeSpec> nodes, const std::vector<PipeSpec>& pipes) : nodes_(std::move(nodes)) {
   if (pipes.empty()) throw InputError("a network needs at least one pipe", "network.pipes");
-  RequireUniqueIds(nodes_, "network.nodes");
-  RequireUniqueIds(pipes, "network.pipes");
+  node_index_ = IndexIds(nodes_, "network.nodes");
+  pipe_index_ = IndexIds(pipes, "network.pipes");
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     RequireFinite(nodes_[i].position_m, ItemKey("network.nodes", i) + ".position_m");
   }
-  pipes_.reserve(pipes.size());
-  for (std::size_t i = 0; i < pipes.size(); ++i) {
-    pipes_.push_back(BuildPipe(nodes_, pipes[i], ItemKey("network.pipes", i)));
-    pipes_.back().passable = pipes[i].passable;
-  }
+  std::vector<PipeNodes> pipe_nodes;
   ends_.resize(nodes_.size());
-  for (std::size_t i = 0; i < pipes_.size(); ++i) {
-    ends_[static_cast<std::size_t>(pipes_[i].from)].push_back({static_cast<int>(i), false});
-    ends_[static_cast<std::size_t>(pipes_[i].to)].push_back({static_cast<int>(i), true});
+  for (std::size_t i = 0; i < pipes.size(); ++i) {
+    const std::string key = ItemKey("network.pipes", i);
+    pipe_nodes.push_back(ResolveNodes(node_index_, pipes[i], key));
+    RequireValid(pipes[i], key);
+    ends_[static_cast<std::size_t>(pipe_nodes[i].from)].push_back({static_cast<int>(i), false});
+    ends_[static_cast<std::size_t>(pipe_nodes[i].to)].push_back({static_cast<int>(i), true});
+  }
+  std::vector<PipeCourse> courses = LayPipes({nodes_, pipes, pipe_nodes, ends_});
+  for (std::size_t i = 0; i < pipes.size(); ++i) {
+    pipes_.push_back(MakePipe(pipes[i], pipe_nodes[i], std::move(courses[i])));
   }
 }
 
-std::optional<int> Network::FindNode(std::string_view id) const { return FindId(nodes_, id); }
-std::optional<int> Network::FindPipe(std::string_view id) const { return FindId(pipes_, id); }
+std::optional<int> Network::FindNode(std::string_view id) const { return FindId(node_index_, id); }
+std::optional<int> Network::FindPipe(std::string_view id) const { return FindId(pipe_index_, id); }
 
 }  // namespace piperun

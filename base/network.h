@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -32,11 +34,13 @@ struct PipeSpec {
   std::string to;
   double diameter_m = 0;  ///< bore
   double wall_thickness_m = 0;
-  double bend_radius_m = 0;  ///< of the centreline, at every vertex; not read when there is none
+  double bend_radius_m =
+      0;  ///< of the centreline, at every vertex and where it meets one other pipe; 0: none
   std::vector<Vector3d> vertices_m;
   WallMaterial material;
-  double length_m = 0;   ///< as stated; 0: as drawn
-  bool passable = true;  ///< false: a pump, a closed or throttling valve; nothing solid gets through
+  double length_m = 0;     ///< as stated; 0: as drawn
+  bool passable = true;    ///< false: a pump, a closed or throttling valve; nothing solid gets through
+  bool fit_bends = false;  ///< bends that do not fit are made tighter or left out, not refused
 };
 
 /// A concentric reducer at an end of a pipe: the bore widens to that of the pipe it meets there.
@@ -75,12 +79,14 @@ struct Pipe {
   Vector3d Inward(bool at_to) const;
 };
 
-/// An immutable pipe network: nodes, and pipes made of straight lines and circular bends.
+/// An immutable pipe network: nodes, and pipes made of straight lines and circular bends, laid by LayPipes.
+/// Every pipe has its own drawing: with stated lengths, its end need not lie where the next pipe begins.
 class Network {
  public:
   /// Throws InputError with the key path ("network.pipes[2].diameter_m") of what is wrong: an id that is
-  /// empty, used twice or unknown; a size that is not a finite number > 0; a coordinate that is not finite; a
-  /// bend tighter than the bore; a bend that does not fit; no pipe at all.
+  /// empty, used twice or unknown; a pipe from a node to itself; a size that is not a finite number > 0; a
+  /// coordinate that is not finite; a length shorter than the rise; a bend tighter than the bore; a bend that
+  /// does not fit; no pipe at all.
   Network(std::vector<NodeSpec> nodes, const std::vector<PipeSpec>& pipes);
 
   const std::vector<NodeSpec>& nodes() const { return nodes_; }
@@ -88,7 +94,7 @@ class Network {
   const Pipe& pipe(int i) const { return pipes_[static_cast<std::size_t>(i)]; }
   std::optional<int> FindNode(std::string_view id) const;
   std::optional<int> FindPipe(std::string_view id) const;
-  /// Pipes that begin or end at a node; one that does both is named twice.
+  /// Pipes that begin or end at a node.
   const std::vector<PipeEnd>& EndsAt(int node) const { return ends_[static_cast<std::size_t>(node)]; }
   int NodeAt(PipeEnd end) const { return end.at_to ? pipe(end.pipe).to : pipe(end.pipe).from; }
 
@@ -96,6 +102,7 @@ class Network {
   std::vector<NodeSpec> nodes_;
   std::vector<Pipe> pipes_;
   std::vector<std::vector<PipeEnd>> ends_;  ///< per node
+  std::map<std::string, int, std::less<>> node_index_, pipe_index_;
 };
 
 }  // namespace piperun

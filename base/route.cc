@@ -6,55 +6,72 @@
 #include <utility>
 
 #include "base/check.h"
-#include "base/number.h"
 
 namespace piperun {
 namespace {
 
-constexpr double kMaxKink_rad = 1e-6;
+constexpr double kMaxGap_m = 1e-9;  // below this one leg's drawing goes on in the next
+
+/// A stretch of a pipe in which its bore changes evenly, and its centreline is one line or arc.
+struct Stretch {
+  CentrelinePiece line;  // s along the pipe
+  double radius_begin_m = 0, radius_end_m = 0;
+};
+
+/// The part of a straight from s to its end.
+CentrelinePiece CutOff(CentrelinePiece& line, double s_m) {
+  CentrelinePiece rest = line;
+  rest.p_begin_W = EvalCentreline(line, s_m).p_W;
+  rest.s_begin_m = s_m;
+  rest.length_m = line.s_end_m() - s_m;
+  line.length_m = s_m - line.s_begin_m;
+  return rest;
+}
+
+/// The pieces of a pipe's centreline, cut where its cones end. A cone lies within a straight (see LayPipes).
+std::vector<Stretch> CutAtCones(const Pipe& pipe) {
+  std::vector<CentrelinePiece> lines = pipe.centreline;
+  if (pipe.cone_from.length_m > 0)
+    lines.insert(lines.begin() + 1, CutOff(lines.front(), pipe.cone_from.length_m));
+  if (pipe.cone_to.length_m > 0) {
+    lines.push_back(CutOff(lines.back(), pipe.length_m - pipe.cone_to.length_m));
+  }
+  std::vector<Stretch> stretches;
+  for (const CentrelinePiece& line : lines) stretches.push_back({line, pipe.radius_m(), pipe.radius_m()});
+  if (pipe.cone_from.length_m > 0) stretches.front().radius_begin_m = pipe.cone_from.end_radius_m;
+  if (pipe.cone_to.length_m > 0) stretches.back().radius_end_m = pipe.cone_to.end_radius_m;
+  return stretches;
+}
+
+RoutePiece MakePiece(RouteLeg leg, const Stretch& stretch, double chainage_m) {
+  RoutePiece piece;
+  piece.pipe = leg.pipe;
+  piece.reversed = leg.reversed;
+  piece.radius_m = leg.reversed ? stretch.radius_end_m : stretch.radius_begin_m;
+  const double radius_end_m = leg.reversed ? stretch.radius_begin_m : stretch.radius_end_m;
+  piece.taper = (radius_end_m - piece.radius_m) / stretch.line.length_m;
+  piece.pipe_s_begin_m = leg.reversed ? stretch.line.s_end_m() : stretch.line.s_begin_m;
+  piece.line = leg.reversed ? Reversed(stretch.line, chainage_m) : stretch.line;
+  piece.line.s_begin_m = chainage_m;
+  return piece;
+}
 
 void AppendLeg(const Network& network, RouteLeg leg, std::vector<RoutePiece>& pieces) {
-  const Pipe& pipe = network.pipe(leg.pipe);
-  const auto append = [&](const CentrelinePiece& piece) {
-    const double chainage = pieces.empty() ? 0 : pieces.back().line.s_end_m();
-    RoutePiece r;
-    r.pipe = leg.pipe;
-    r.reversed = leg.reversed;
-    r.radius_m = pipe.radius_m();
-    r.pipe_s_begin_m = leg.reversed ? piece.s_end_m() : piece.s_begin_m;
-    if (leg.reversed) {
-      r.line = Reversed(piece, chainage);
-    } else {
-      r.line = piece;
-      r.line.s_begin_m = chainage;
-    }
-    pieces.push_back(r);
-  };
-  if (leg.reversed) {
-    std::for_each(pipe.centreline.rbegin(), pipe.centreline.rend(), append);
-  } else {
-    std::for_each(pipe.centreline.begin(), pipe.centreline.end(), append);
+  std::vector<Stretch> stretches = CutAtCones(network.pipe(leg.pipe));
+  if (leg.reversed) std::reverse(stretches.begin(), stretches.end());
+  const std::size_t first = pieces.size();
+  for (const Stretch& stretch : stretches) {
+    pieces.push_back(MakePiece(leg, stretch, pieces.empty() ? 0 : pieces.back().line.s_end_m()));
   }
+  if (first == 0) return;
+  const CentrelinePiece& before = pieces[first - 1].line;
+  const Vector3d gap_W = EvalCentreline(before, before.s_end_m()).p_W - pieces[first].line.p_begin_W;
+  if (gap_W.norm() <= kMaxGap_m) return;
+  for (std::size_t i = first; i < pieces.size(); ++i) pieces[i].line.p_begin_W += gap_W;
 }
 
-/// Pipe `b` must go on where pipe `a` ends: same place, same direction, same bore.
-void RequireSmoothJoint(const Network& network, const RoutePiece& a, const RoutePiece& b) {
-  const std::string names = "pipes '" + network.pipe(a.pipe).id + "' and '" + network.pipe(b.pipe).id + "' ";
-  const CentrelinePoint end = EvalCentreline(a.line, a.line.s_end_m());
-  if ((end.p_W - b.line.p_begin_W).norm() > 1e-6) throw InputError(names + "do not meet", "network.pipes");
-  const double kink = std::atan2(end.tangent_W.cross(b.line.tangent_begin_W).norm(),
-                                 end.tangent_W.dot(b.line.tangent_begin_W));
-  if (kink > kMaxKink_rad) {
-    throw InputError(names + "meet at an angle of " + FormatNumber(kink) +
-                         " rad; move the corner into one pipe as a vertex, where it gets a bend",
-                     "network.pipes");
-  }
-  if (a.radius_m != b.radius_m) {
-    throw InputError(names + "differ in diameter (" + FormatNumber(2 * a.radius_m) + " m and " +
-                         FormatNumber(2 * b.radius_m) + " m); reducers are not supported yet",
-                     "network.pipes");
-  }
-}
+int BeginOf(const Network& network, RouteLeg leg) { return network.NodeAt({leg.pipe, leg.reversed}); }
+int EndOf(const Network& network, RouteLeg leg) { return network.NodeAt({leg.pipe, !leg.reversed}); }
 
 int OtherEnd(const Pipe& pipe, int node) { return pipe.from == node ? pipe.to : pipe.from; }
 
@@ -69,9 +86,10 @@ std::vector<int> SpreadFrom(const Network& network, int launch_node) {
     open.pop_front();
     for (const auto& [p, at_to] : network.EndsAt(node)) {
       const int next = OtherEnd(network.pipe(p), node);
+      if (!network.pipe(p).passable) continue;
       if (next == launch_node || reached_by[static_cast<std::size_t>(next)] != kUnreached) continue;
       reached_by[static_cast<std::size_t>(next)] = p;
-      open.push_back(next);
+      if (!network.nodes()[static_cast<std::size_t>(next)].open_water) open.push_back(next);
     }
   }
   return reached_by;
@@ -81,11 +99,15 @@ std::vector<int> SpreadFrom(const Network& network, int launch_node) {
 
 Route::Route(const Network& network, std::vector<RouteLeg> legs) : legs_(std::move(legs)) {
   Demand(!legs_.empty(), "a route has at least one pipe");
-  for (const RouteLeg& leg : legs_) {
+  for (std::size_t i = 0; i < legs_.size(); ++i) {
+    const RouteLeg leg = legs_[i];
     Demand(leg.pipe >= 0 && leg.pipe < static_cast<int>(network.pipes().size()), "a leg's pipe exists");
-    const std::size_t first = pieces_.size();
+    if (i > 0 && BeginOf(network, leg) != EndOf(network, legs_[i - 1])) {
+      throw InputError("pipes '" + network.pipe(legs_[i - 1].pipe).id + "' and '" +
+                           network.pipe(leg.pipe).id + "' do not meet",
+                       "network.pipes");
+    }
     AppendLeg(network, leg, pieces_);
-    if (first > 0) RequireSmoothJoint(network, pieces_[first - 1], pieces_[first]);
   }
 }
 
@@ -98,6 +120,10 @@ std::size_t Route::FindPiece(double chainage_m, std::size_t hint) const {
 
 CentrelinePoint Route::Eval(double chainage_m, std::size_t hint) const {
   return EvalCentreline(pieces_[FindPiece(chainage_m, hint)].line, chainage_m);
+}
+
+double Route::RadiusAt_m(double chainage_m, std::size_t hint) const {
+  return pieces_[FindPiece(chainage_m, hint)].RadiusAt_m(chainage_m);
 }
 
 PipePosition Route::Locate(double chainage_m, std::size_t hint) const {
@@ -114,6 +140,22 @@ std::optional<double> Route::Chainage(int pipe, double s_m) const {
   return std::nullopt;
 }
 
+std::vector<RouteLeg> MakeLegs(const Network& network, int launch_node, const std::vector<int>& pipes) {
+  std::vector<RouteLeg> legs;
+  int node = launch_node;
+  for (const int p : pipes) {
+    const Pipe& pipe = network.pipe(p);
+    if (pipe.from != node && pipe.to != node) {
+      throw InputError("pipe '" + pipe.id + "' does not lead on from node '" +
+                           network.nodes()[static_cast<std::size_t>(node)].id + "'",
+                       "network.pipes");
+    }
+    legs.push_back({p, pipe.from != node});
+    node = OtherEnd(pipe, node);
+  }
+  return legs;
+}
+
 Route FindRoute(const Network& network, int launch_node, int retrieve_node) {
   const auto nodes = static_cast<int>(network.nodes().size());
   Demand(launch_node >= 0 && launch_node < nodes, "the launch node exists");
@@ -126,7 +168,9 @@ Route FindRoute(const Network& network, int launch_node, int retrieve_node) {
   std::vector<RouteLeg> legs;
   for (int node = retrieve_node; node != launch_node;) {
     const int p = reached_by[static_cast<std::size_t>(node)];
-    if (p == kUnreached) throw InputError("no pipes lead there from the launch node", "mission.retrieve");
+    if (p == kUnreached) {
+      throw InputError("no pipes that a ball can pass lead there from the launch node", "mission.retrieve");
+    }
     legs.push_back({p, network.pipe(p).to != node});
     node = OtherEnd(network.pipe(p), node);
   }

@@ -7,7 +7,8 @@
 namespace piperun::estimator {
 namespace {
 
-constexpr double kVertical = 1e-3;  // sine of the angle to the vertical below which a pipe has no invert
+constexpr double kVertical = 1e-3;    // sine of the angle to the vertical below which a pipe has no invert
+constexpr double kSmooth_rad = 1e-6;  // turn below which one straight goes on in the next
 
 /// Where an arc's tangent lies closest to a direction; its beginning for a line.
 double ParallelPlace_m(const CentrelinePiece& line, const Vector3d& direction_W) {
@@ -25,9 +26,11 @@ InvertPoint InvertTrack::Eval(double chainage_m) {
   const Vector3d up = Vector3d::UnitZ() - axis.tangent_W.z() * axis.tangent_W;
   const double sine = up.norm();
   if (sine > kVertical) normal_W_ = up / sine;
-  const double below_m = sine > kVertical ? piece.radius_m - ball_radius_m_ : 0;
+  const bool lies = sine > kVertical;
+  const double below_m = lies ? piece.RadiusAt_m(chainage_m) - ball_radius_m_ : 0;
+  const double sinking = lies ? piece.taper : 0;
   return {axis.p_W - below_m * normal_W_, axis.tangent_W, normal_W_,
-          1 + below_m * axis.curvature_W.dot(normal_W_)};
+          std::hypot(1 + below_m * axis.curvature_W.dot(normal_W_), sinking)};
 }
 
 Vector3d InvertTrack::FindTangent(double chainage_m, double slack_m, const Vector3d& course_W) const {
@@ -66,10 +69,13 @@ double InvertTrack::Project(const Vector3d& p_W, double near_m, double reach_m) 
 
 bool InvertTrack::StraightAround(double chainage_m, double margin_m) {
   piece_ = route_.FindPiece(chainage_m, piece_);
-  const auto straight = [this](double s) {
-    return route_.pieces()[route_.FindPiece(s, piece_)].line.straight();
-  };
-  return straight(chainage_m) && straight(chainage_m - margin_m) && straight(chainage_m + margin_m);
+  const Vector3d& tangent_W = route_.pieces()[piece_].line.tangent_begin_W;
+  const std::size_t last = route_.FindPiece(chainage_m + margin_m, piece_);
+  for (std::size_t i = route_.FindPiece(chainage_m - margin_m, piece_); i <= last; ++i) {
+    const CentrelinePiece& line = route_.pieces()[i].line;
+    if (!line.straight() || CalcTurn_rad(tangent_W, line.tangent_begin_W) > kSmooth_rad) return false;
+  }
+  return true;
 }
 
 }  // namespace piperun::estimator

@@ -9,11 +9,16 @@ struct InvertPoint {
   Vector3d p_W;        ///< of the ball's centre
   Vector3d tangent_W;  ///< direction of travel
   Vector3d normal_W;   ///< from the contact to the ball's centre: up, made perpendicular to the tangent
-  double stretch = 1;  ///< path of the ball's centre per metre of centreline: 1 + d kappa . n
+  double stretch = 1;  ///< path of the ball's centre per metre of centreline
 };
 
-/// Where a ball of given radius runs along a route: a distance d = R - r below the axis. Keeps the map by
-/// reference; remembers the piece it was last asked about.
+/// Where a ball of given radius r runs along a route: a distance d = R(s) - r below the axis, R the bore's
+/// radius. Per metre of centreline with curvature vector kappa its centre travels
+///
+///   sqrt((1 + d kappa . n)^2 + (dR/ds)^2)
+///
+/// At a sharp corner direction and, on a slope, position change at once. Keeps the map by reference;
+/// remembers the piece it was last asked about.
 class InvertTrack {
  public:
   InvertTrack(const RouteMap& map, double ball_radius_m) : route_(map.route), ball_radius_m_(ball_radius_m) {}
@@ -26,7 +31,7 @@ class InvertTrack {
   Vector3d FindTangent(double chainage_m, double slack_m, const Vector3d& course_W) const;
   /// Chainage of the point of the route nearest to p, searched on the pieces within `reach_m` of `near_m`.
   double Project(const Vector3d& p_W, double near_m, double reach_m) const;
-  /// True when the route is straight for `margin_m` on both sides.
+  /// True when the route runs in one direction for `margin_m` on both sides: no bend, no sharp corner.
   bool StraightAround(double chainage_m, double margin_m);
 
  private:

@@ -129,6 +129,16 @@ const BadPlan kBadPlans[] = {
        p.pipes[0].bend_radius_m = 0.075;
      },
      "network.pipes[0].bend_radius_m", "must exceed the bore radius 0.075 m"},
+    {"SelfLoop", [](Plan& p) { p.pipes[1].to = "B"; }, "network.pipes[1].to", "from 'B' to itself"},
+    {"NegativeLength", [](Plan& p) { p.pipes[1].length_m = -3; }, "network.pipes[1].length_m", "-3 is not"},
+    {"LengthNotANumber", [](Plan& p) { p.pipes[1].length_m = kNan; }, "network.pipes[1].length_m",
+     "nan is not"},
+    {"EndlessLength", [](Plan& p) { p.pipes[0].length_m = kInfinity; }, "network.pipes[0].length_m",
+     "inf is not"},
+    {"LengthBelowTheRise", [](Plan& p) { p.pipes[1].length_m = 1.5; }, "network.pipes[1].length_m",
+     "shorter than the rise of 2 m"},
+    {"BendRadiusNotANumber", [](Plan& p) { p.pipes[0].bend_radius_m = kNan; },
+     "network.pipes[0].bend_radius_m", "nan m is too tight"},
     {"BendThatDoesNotFit",
      [](Plan& p) {
        p.pipes[0].vertices_m = {{5, 5, 0}};
