@@ -128,6 +128,26 @@ TEST(BallAtJunction, ReportsTheCrossingIntoABranch) {
   EXPECT_NEAR(world.state().spot.s_m, world.state().X_LB.p.y(), 1e-12);
 }
 
+TEST(BallAtJunction, CrossesAJointWhoseDrawingDoesNotClose) {
+  // a pipe of stated length 2.5 m drawn 2 m long: its end lies half a metre beyond the node, where the next
+  // begins
+  std::vector<PipeSpec> pipes{MakePipeSpec("P", "A", "M"), MakePipeSpec("Q", "M", "B")};
+  pipes[0].length_m = 2.5;
+  const BoreNetwork line(Network({{"A", {0, 0, 0}}, {"M", {2, 0, 0}}, {"B", {6, 0, 0}}}, pipes));
+  BallWorld world(line.bore, Ball(), Rate(1000), Rolling(line.network, 0, {2.2, 0, -kRun}, {1, 0, 0}),
+                  Weight);
+  Vector3d offset = Vector3d::Zero();  // from the ball's own way to the drawing
+  for (int i = 0; i < 600; ++i) {
+    world.Step();
+    if (world.state().crossing) offset += world.state().crossing->shift_L;
+  }
+  EXPECT_EQ(world.state().spot.pipe, 1);
+  EXPECT_NEAR((offset - Vector3d(-0.5, 0, 0)).norm(), 0, 1e-12);
+  EXPECT_NEAR(world.state().spot.s_m, 0.3, 1e-9);
+  EXPECT_NEAR((world.state().X_LB.p - offset - Vector3d(2.8, 0, -kRun)).norm(), 0, 1e-9);
+  EXPECT_NEAR(world.state().v_WB_W.x(), 1, 1e-9);
+}
+
 TEST(BallAtJunction, RisesThroughAVerticalMitre) {
   const BoreNetwork riser(MakeStar(Vector3d::Zero(), {{{3, 0, 0}, kBore}, {{0, 0, 3}, kBore}}));
   BallWorld world(riser.bore, Ball(), Rate(1000), At(riser.network, 0, {0.5, 0, -kRun}),
