@@ -124,11 +124,13 @@ double Pipe::RadiusAt_m(double s_m) const {
   return radius_m();
 }
 
-CentrelinePoint Pipe::Eval(double s_m) const {
+std::size_t Pipe::FindPiece(double s_m) const {
   std::size_t i = 0;
   while (i + 1 < centreline.size() && s_m > centreline[i].s_end_m()) ++i;
-  return EvalCentreline(centreline[i], s_m);
+  return i;
 }
+
+CentrelinePoint Pipe::Eval(double s_m) const { return EvalCentreline(centreline[FindPiece(s_m)], s_m); }
 
 Vector3d Pipe::Inward(bool at_to) const {
   const Vector3d tangent = Eval(EndS_m(at_to)).tangent_W;

@@ -73,6 +73,8 @@ struct Pipe {
   /// Radius of the bore at s: radius_m() but in the cones.
   double RadiusAt_m(double s_m) const;
   double EndS_m(bool at_to) const { return at_to ? length_m : 0; }
+  /// Index of the piece of the centreline that holds s; the first or last beyond the ends.
+  std::size_t FindPiece(double s_m) const;
   /// Axis at s; beyond the ends the first or last piece goes on.
   CentrelinePoint Eval(double s_m) const;
   /// Unit tangent of the axis at an end, pointing into the pipe.

@@ -35,7 +35,7 @@ ToldParams Tell(const StartParams& start, const Scenario& scenario, const Assemb
   } else if (start.heading == "given") {
     told.heading_rad = start.heading_rad;
   }
-  told.chainage_m = 0;  // by definition: chainage counts from the launch point
+  told.chainage_m = assembly.motion->state().chainage_m;  // 0, or a little way into the pipe at a junction
   told.chainage_sd_m = start.chainage_sd_m;
   told.p_W = assembly.motion->planned_start_W();
   told.heading_sd_rad = start.heading_sd_rad;

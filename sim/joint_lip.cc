@@ -105,25 +105,27 @@ std::optional<JointLip::Point> JointLip::Eval(std::span<const BoreMember> member
   return point;
 }
 
-/// Derivative of half the squared distance along the rim, up to a positive factor. Where there is no rim, the
-/// distance rises away from the minimum looked for.
-double JointLip::CalcSlope(std::span<const BoreMember> members, const Vector3d& p_N, double phi,
-                           bool upper) const {
+/// Derivative of half the squared distance along the rim, up to a positive factor.
+std::optional<double> JointLip::CalcSlope(std::span<const BoreMember> members, const Vector3d& p_N,
+                                          double phi) const {
   const auto point = Eval(members, phi);
-  if (!point) return upper ? kNowhere_m : -kNowhere_m;
+  if (!point) return std::nullopt;
   return (point->q - p_N).dot(point->tangent);
 }
 
 /// The stretch of the rim beside a sample, nearer than its neighbours, in which the least distance lies:
-/// the slope rises through zero. Two minima within a few degrees may count as one.
+/// the slope rises through zero. Two minima within a few degrees may count as one; one as near to an end of
+/// the rim is found on the rim of the tube that goes on from there.
 std::optional<JointLip::Bracket> JointLip::FindBracket(std::span<const BoreMember> members,
                                                        const Vector3d& p_N, int sample) const {
-  const double middle = SampleAngle(sample), at_middle = CalcSlope(members, p_N, middle, true);
-  const bool upper = at_middle < 0;
-  for (const double share : {1.0, 0.25, 0.5, 0.75}) {  // the first does, but where three extrema crowd
+  const double middle = SampleAngle(sample);
+  const auto at_middle = CalcSlope(members, p_N, middle);
+  if (!at_middle) return std::nullopt;
+  const bool upper = *at_middle < 0;
+  for (const double share : {1.0, 0.25, 0.5, 0.75}) {  // the first does, but where extrema or ends crowd
     const double phi = middle + (upper ? share : -share) * SampleAngle(1);
-    const double slope = CalcSlope(members, p_N, phi, upper);
-    if (upper ? slope > 0 : slope < 0) return Bracket{middle, at_middle, phi, slope};
+    const auto slope = CalcSlope(members, p_N, phi);
+    if (slope && (upper ? *slope > 0 : *slope < 0)) return Bracket{middle, *at_middle, phi, *slope};
   }
   return std::nullopt;
 }
@@ -131,10 +133,9 @@ std::optional<JointLip::Bracket> JointLip::FindBracket(std::span<const BoreMembe
 JointLip::Minimum JointLip::FindMinimum(std::span<const BoreMember> members, const Vector3d& p_N,
                                         int sample) const {
   const auto bracket = FindBracket(members, p_N, sample);
-  if (!bracket) return {Eval(members, SampleAngle(sample)), false};
-  const bool upper = bracket->at_middle < 0;
+  if (!bracket) return {};
   const SignChange at =
-      FindSignChange([&](double phi) { return CalcSlope(members, p_N, phi, upper); },
+      FindSignChange([&](double phi) { return CalcSlope(members, p_N, phi).value_or(0); },
                      {bracket->middle, bracket->at_middle}, {bracket->beside, bracket->at_beside});
   const auto point = Eval(members, at.below), above = Eval(members, at.above);
   if (!point || !above) return {};

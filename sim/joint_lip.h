@@ -58,7 +58,7 @@ class JointLip {
   Minimum FindMinimum(std::span<const BoreMember> members, const Vector3d& p_N, int sample) const;
   void AddFoot(const Vector3d& p_N, const Minimum& minimum, WallFeet& feet) const;
   void AddRing(const Vector3d& p_N, int nearest, WallFeet& feet) const;
-  double CalcSlope(std::span<const BoreMember> members, const Vector3d& p_N, double phi, bool upper) const;
+  std::optional<double> CalcSlope(std::span<const BoreMember> members, const Vector3d& p_N, double phi) const;
 
   std::size_t tube_ = 0;
   Vector3d u_, w_;

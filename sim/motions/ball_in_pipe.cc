@@ -1,5 +1,6 @@
 // The ball carried by the water through a network, in the Bullet world.
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/check.h"
@@ -47,17 +48,27 @@ Vector3d FindDown(const Vector3d& gravity_W, const Vector3d& tangent_W) {
   return tangent_W.unitOrthogonal();
 }
 
-/// At rest on the invert where chainage begins, moved around the wall by an arc a ~ N(0, lateral_sd): the
+/// How far into the launch pipe the ball is put: clear of whatever else opens at the node.
+double LaunchDistance_m(const MotionContext& context) {
+  const Joint& joint = context.bore->joint(context.network->NodeAt(context.launch));
+  if (joint.smooth || joint.dead_end()) return 0;
+  const double clear_m = context.bore->FindArm(joint, context.launch).reach_m + context.ball.radius_m;
+  return std::min(clear_m, 0.5 * LaunchPipe(context).length_m);
+}
+
+/// At rest on the invert near the node where chainage begins, moved around the wall by an arc a ~ N(0, lateral_sd): the
 /// angle is a/R. B: x along the pipe, z against gravity across the pipe, y = z x x to the left.
 BallStart MakeStart(const MotionContext& context, double lateral_sd_m) {
   const Pipe& pipe = LaunchPipe(context);
   BallStart start;
   start.spot.pipe = context.launch.pipe;
-  start.spot.s_m = pipe.EndS_m(context.launch.at_to);
-  start.spot.piece = context.launch.at_to ? pipe.centreline.size() - 1 : 0;
-  start.spot.axis = pipe.Eval(start.spot.s_m);
+  const double from_node_m = LaunchDistance_m(context);
+  start.spot.s_m = context.launch.at_to ? pipe.length_m - from_node_m : from_node_m;
+  start.spot.piece = pipe.FindPiece(start.spot.s_m);
+  start.spot.axis = EvalCentreline(pipe.centreline[start.spot.piece], start.spot.s_m);
   const double bore_radius_m = pipe.RadiusAt_m(start.spot.s_m);
-  const Vector3d x = pipe.Inward(context.launch.at_to), z = -FindDown(context.gravity_W, x), y = z.cross(x);
+  const double sense = context.launch.at_to ? -1 : 1;
+  const Vector3d x = sense * start.spot.axis.tangent_W, z = -FindDown(context.gravity_W, x), y = z.cross(x);
   const double draw = RandomStream(context.seed, "launch", context.run).Normals(0, 0)[0];
   const double angle = lateral_sd_m * draw / bore_radius_m;
   Matrix3d R_WB;

@@ -128,6 +128,26 @@ TEST(BallAtJunction, ReportsTheCrossingIntoABranch) {
   EXPECT_NEAR(world.state().spot.s_m, world.state().X_LB.p.y(), 1e-12);
 }
 
+TEST(BallAtJunction, CrossesAJointWhoseDrawingDoesNotClose) {
+  // a pipe of stated length 2.5 m drawn 2 m long: its end lies half a metre beyond the node, where the next
+  // begins
+  std::vector<PipeSpec> pipes{MakePipeSpec("P", "A", "M"), MakePipeSpec("Q", "M", "B")};
+  pipes[0].length_m = 2.5;
+  const BoreNetwork line(Network({{"A", {0, 0, 0}}, {"M", {2, 0, 0}}, {"B", {6, 0, 0}}}, pipes));
+  BallWorld world(line.bore, Ball(), Rate(1000), Rolling(line.network, 0, {2.2, 0, -kRun}, {1, 0, 0}),
+                  Weight);
+  Vector3d offset = Vector3d::Zero();  // from the ball's own way to the drawing
+  for (int i = 0; i < 600; ++i) {
+    world.Step();
+    if (world.state().crossing) offset += world.state().crossing->shift_L;
+  }
+  EXPECT_EQ(world.state().spot.pipe, 1);
+  EXPECT_NEAR((offset - Vector3d(-0.5, 0, 0)).norm(), 0, 1e-12);
+  EXPECT_NEAR(world.state().spot.s_m, 0.3, 1e-9);
+  EXPECT_NEAR((world.state().X_LB.p - offset - Vector3d(2.8, 0, -kRun)).norm(), 0, 1e-9);
+  EXPECT_NEAR(world.state().v_WB_W.x(), 1, 1e-9);
+}
+
 TEST(BallAtJunction, RisesThroughAVerticalMitre) {
   const BoreNetwork riser(MakeStar(Vector3d::Zero(), {{{3, 0, 0}, kBore}, {{0, 0, 3}, kBore}}));
   BallWorld world(riser.bore, Ball(), Rate(1000), At(riser.network, 0, {0.5, 0, -kRun}),
@@ -167,14 +187,18 @@ TEST(BallAtJunction, APlateHoldsTheBallAtAShutBranch) {
   EXPECT_LT(world.state().v_WB_W.norm(), 1e-6);
 }
 
+/// A pipe of the main's bore up to x = 1, one of 0.1 m from there on; it begins with a cone.
+BoreNetwork MakeReducer() {
+  return BoreNetwork(Network({{"A", {0, 0, 0}}, {"M", {1, 0, 0}}, {"B", {3, 0, 0}}},
+                             {MakePipeSpec("wide", "A", "M", {.diameter_m = 0.15}),
+                              MakePipeSpec("narrow", "M", "B", {.diameter_m = 0.1})}));
+}
+
 TEST(BallAtJunction, ABallTooLargeForAConeJamsWhereItFits) {
   // contact all around at R(s) cos(alpha) = r; F = N sin(alpha), N the sum around
-  const double cone_m = 0.15, radius = 0.06, slope = 0.025 / cone_m, push = 0.5;
+  const BoreNetwork reducer = MakeReducer();
+  const double radius = 0.06, slope = 0.025 / reducer.network.pipe(1).cone_from.length_m, push = 0.5;
   const double cosine = 1 / std::hypot(1, slope), sine = slope * cosine;
-  std::vector<PipeSpec> pipes{MakePipeSpec("wide", "A", "M", {.diameter_m = 0.15}),
-                              MakePipeSpec("narrow", "M", "B", {.diameter_m = 0.1})};
-  pipes[1].cone_from = {cone_m, kBore};
-  const BoreNetwork reducer(Network({{"A", {0, 0, 0}}, {"M", {1, 0, 0}}, {"B", {2, 0, 0}}}, pipes));
   BallWorld world(reducer.bore, {radius, 1, 1e-3, 0, 0}, Rate(1000),
                   At(reducer.network, 0, {0.5, 0.002, -0.01}), [&](const BallInstant& ball) {
                     return BallLoad{Vector3d(push, 0, 0) - 1.0 * ball.v_WB_W, Vector3d::Zero()};
@@ -190,11 +214,8 @@ TEST(BallAtJunction, JumpsOffTheEdgeOfAReducer) {
   // At 0.5 m/s the cone turns the path up by alpha with an impact; the ball climbs it, centre from -R + r to
   // -R' + r cos(alpha); at the edge, v^2/r being above gravity in water, it flies, and lands in the narrow
   // pipe.
-  std::vector<PipeSpec> pipes{MakePipeSpec("wide", "A", "M", {.diameter_m = 0.15}),
-                              MakePipeSpec("narrow", "M", "B", {.diameter_m = 0.1})};
-  pipes[1].cone_from = {0.15, kBore};
-  const BoreNetwork reducer(Network({{"A", {0, 0, 0}}, {"M", {1, 0, 0}}, {"B", {3, 0, 0}}}, pipes));
-  const double v = 0.5, cosine = std::cos(std::atan(0.025 / 0.15));
+  const BoreNetwork reducer = MakeReducer();
+  const double v = 0.5, cosine = std::cos(std::atan(0.025 / reducer.network.pipe(1).cone_from.length_m));
   const double at_foot = CalcSpeedAfterTurn(v, cosine), climb = 0.025 - kRadius * (1 - cosine);
   const double at_edge = std::sqrt(at_foot * at_foot - 2 * kWeight * climb / (kInertial + kRotary));
   BallWorld world(reducer.bore, Ball(), Rate(4000), Rolling(reducer.network, 0, {0.9, 0, -kRun}, {v, 0, 0}),

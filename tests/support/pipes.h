@@ -75,7 +75,8 @@ inline Network MakeStar(const Vector3d& hub_m, const std::vector<StarArm>& arms)
   for (std::size_t i = 0; i < arms.size(); ++i) {
     const std::string id = std::to_string(i);
     nodes.push_back({"N" + id, hub_m + arms[i].to_m});
-    pipes.push_back(MakePipeSpec("P" + id, "H", nodes.back().id, {.diameter_m = 2 * arms[i].radius_m}));
+    const PipeShape shape{.diameter_m = 2 * arms[i].radius_m, .bend_radius_m = 0};  // corners stay sharp
+    pipes.push_back(MakePipeSpec("P" + id, "H", nodes.back().id, shape));
     pipes.back().passable = arms[i].passable;
   }
   return Network(std::move(nodes), pipes);
