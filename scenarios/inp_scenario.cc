@@ -99,7 +99,8 @@ InpScenarioPlan PlanInpScenario(const std::string& inp_path, const std::string& 
     plan.leak_pipe = pipe.id;
     plan.leak_s_m = std::round(5 * longest_m) / 10;
   }
-  plan.time_limit_s = std::max(kShortestRun_s, std::ceil(route.length_m() / kSlowestBall_m_s));
+  plan.ball_diameter_m = std::floor(1000 * plan.ball_diameter_m) / 1000;
+  plan.time_limit_s = std::max(kShortestRun_s, 60 * std::ceil(route.length_m() / kSlowestBall_m_s / 60));
   return plan;
 }
 
