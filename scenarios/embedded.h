@@ -11,8 +11,8 @@ struct EmbeddedFile {
   std::string_view text;
 };
 
-const std::vector<EmbeddedFile>& EmbeddedScenarios();  ///< scenarios/library/*.yaml
-const std::vector<EmbeddedFile>& EmbeddedMaterials();  ///< assets/materials/*.yaml
+const std::vector<EmbeddedFile>& EmbeddedScenarios();      ///< scenarios/library/*.yaml
+const std::vector<EmbeddedFile>& EmbeddedMaterials();      ///< assets/materials/*.yaml
 const std::vector<EmbeddedFile>& EmbeddedMaterialRules();  ///< assets/materials/rules/*.yaml
 
 }  // namespace piperun::scenarios

@@ -24,8 +24,8 @@ std::string MakeInpScenario(const InpScenarioPlan& plan);
 
 /// The plan of a run from one node to another by the way with the fewest pipes: a ball of 60 mm, or 0.4 of
 /// the narrowest bore on the way where that is less, in whole millimetres; time for 5 cm/s; a leak in the
-/// middle of the longest pipe. Throws InputError when a node is not in the file (with the nearest id that is),
-/// or no way leads from one to the other.
+/// middle of the longest pipe. Throws InputError when a node is not in the file (with the nearest id that
+/// is), or no way leads from one to the other.
 InpScenarioPlan PlanInpScenario(const std::string& inp_path, const std::string& launch,
                                 const std::string& retrieve);
 
