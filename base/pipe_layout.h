@@ -38,9 +38,8 @@ struct PipeCourse {
 ///    even this is too wide, an inner vertex is left out of the line (and step 1 done again), and a corner
 ///    between pipes stays sharp, a mitre. Beside a sharp corner and a junction 1.5 diameters stay straight.
 /// 4. The straights of a pipe of stated length are made longer or shorter by one factor, so that the
-/// centreline
-///    has this length (FitStraights). That moves its far end by a fraction of the bends' radii, elevation
-///    included: millimetres.
+///    centreline has this length (FitStraights). That moves its far end by a fraction of the bends' radii;
+///    of that the elevation gets the slope's share: millimetres, centimetres on a steep pipe with wide bends.
 /// 5. Where two pipes of different bore meet without an angle, the narrower one gets a reducer (CalcCone).
 ///
 /// So a pipe ends where its own lengths and directions lead, and drawings need not close. Throws InputError

@@ -17,6 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kFadeLength = 1.5;       // radii
+constexpr double kFineSpacing = 0.15;     // radii
 constexpr double kRegularisation = 1e-9;  // of the mean diagonal of the normal equations
 
 double CalcNormalVelocity(const WallPoint& point, const Vector3d& source) {
@@ -83,25 +84,23 @@ MatrixXd SolveStrengths(const Equations& e) {
   return q;
 }
 
-JunctionFit CalcFit(const JunctionWall& wall, const Joint& joint, const Equations& e, const MatrixXd& q) {
-  const double unit = std::numbers::pi * joint.sphere_radius_m * joint.sphere_radius_m;
-  const auto walls = static_cast<Eigen::Index>(wall.wall.size());
-  const MatrixXd error = unit * (e.rows * q - e.targets);
-  JunctionFit fit{static_cast<int>(wall.sources.size()), static_cast<int>(wall.wall.size()), 0, 0, 0};
-  double wall_area = 0, section_area = 0;
-  for (const WallPoint& point : wall.wall) wall_area += point.area_m2;
-  for (const auto& section : wall.sections) {
-    for (const WallPoint& point : section) section_area += point.area_m2;
+/// Normal velocities on a finer wall than the one the strengths were fitted to.
+JunctionFit CalcFit(const JunctionWall& fine, const PointSources& sources, std::span<const double> outflow,
+                    const Joint& joint) {
+  double unit = 0, area = 0, influx = 0, square = 0;
+  for (std::size_t i = 0; i < outflow.size(); ++i) {
+    const double section = std::numbers::pi * joint.arms[i].radius_m * joint.arms[i].radius_m;
+    unit = std::max(unit, std::abs(outflow[i]) / section);
+    influx += outflow[i];
   }
-  for (Eigen::Index i = 0; i < error.cols(); ++i) {
-    const VectorXd of_wall = error.col(i).head(walls), of_sections = error.col(i).tail(error.rows() - walls);
-    fit.wall_rms = std::max(fit.wall_rms, of_wall.norm() / std::sqrt(wall_area));
-    fit.section_rms = std::max(fit.section_rms, of_sections.norm() / std::sqrt(section_area));
-    for (Eigen::Index k = 0; k < walls; ++k) {
-      const double root = std::sqrt(wall.wall[static_cast<std::size_t>(k)].area_m2);
-      fit.wall_max = std::max(fit.wall_max, std::abs(of_wall[k]) / root);
-    }
+  for (const WallPoint& point : fine.wall) area += point.area_m2;
+  JunctionFit fit;
+  for (const WallPoint& point : fine.wall) {
+    const double error = sources.EvalVelocity(outflow, point.p_N).dot(point.normal) + influx / area;
+    fit.wall_max = std::max(fit.wall_max, std::abs(error) / unit);
+    square += point.area_m2 * error * error;
   }
+  fit.wall_rms = std::sqrt(square / area) / unit;
   return fit;
 }
 
@@ -121,14 +120,24 @@ JunctionFlow::JunctionFlow(const Joint& joint, std::span<const double> core_m) {
   const JunctionWall wall = MakeJunctionWall(joint, core_m);
   const Equations equations = MakeEquations(wall, joint);
   const MatrixXd strengths = SolveStrengths(equations);
-  fit_ = CalcFit(wall, joint, equations, strengths);
   sources_.emplace(wall.sources, strengths);
   for (std::size_t i = 0; i < core_m.size(); ++i) {
     const double radius = joint.arms[i].radius_m;
     const double fade_m = std::min(kFadeLength * radius, 0.6 * core_m[i]);
     arms_.push_back({MakeArmAxes(joint, i), radius, core_m[i] - fade_m, core_m[i], {}});
   }
+  const JunctionWall fine = MakeJunctionWall(joint, core_m, kFineSpacing);
   std::vector<double> unit(arms_.size());
+  for (std::size_t i = 0; i < arms_.size(); ++i) {
+    unit.assign(arms_.size(), 0);
+    unit[i] = 1;
+    unit[i == 0 ? 1 : 0] = -1;
+    const JunctionFit fit = CalcFit(fine, *sources_, unit, joint);
+    fit_.wall_rms = std::max(fit_.wall_rms, fit.wall_rms);
+    fit_.wall_max = std::max(fit_.wall_max, fit.wall_max);
+  }
+  fit_.sources = static_cast<int>(wall.sources.size());
+  fit_.wall_points = static_cast<int>(wall.wall.size());
   for (Arm& arm : arms_) {
     for (std::size_t i = 0; i < arms_.size(); ++i) {
       unit.assign(arms_.size(), 0);

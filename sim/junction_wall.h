@@ -25,9 +25,9 @@ struct JunctionWall {
 Matrix3d MakeArmAxes(const Joint& joint, std::size_t arm);
 
 /// The surface of the union of the arms' tubes, up to `core_m` along each, and of the joint's sphere, in
-/// patches of about a quarter of the radius; and points half a radius outside of it. Section points are
+/// patches of about `wall_spacing` radii; and points half a radius outside of it. Section points are
 /// those of a quadrature (Gauss radially, equal angles around) whose area weights add up to the disc.
 /// Symmetric where the joint is.
-JunctionWall MakeJunctionWall(const Joint& joint, std::span<const double> core_m);
+JunctionWall MakeJunctionWall(const Joint& joint, std::span<const double> core_m, double wall_spacing = 0.26);
 
 }  // namespace piperun::sim

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
-#include <functional>
 #include <ostream>
 #include <string>
 
@@ -69,13 +69,11 @@ TEST(DefaultRules, ALawWithoutEitherRoughnessFallsThrough) {
 /// A rule file that lives as long as the test.
 class RuleFile {
  public:
-  explicit RuleFile(const std::string& rules)
-      : path_(
-            std::filesystem::temp_directory_path() /
-            ("piperun_rules_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
-    std::string name = path_.filename().string();
+  explicit RuleFile(const std::string& rules) {
+    std::string name = "piperun_rules_";
+    name += testing::UnitTest::GetInstance()->current_test_info()->name();
     std::replace(name.begin(), name.end(), '/', '_');
-    path_.replace_filename(name + ".yaml");
+    path_ = std::filesystem::temp_directory_path() / (name + ".yaml");
     WriteTextFile(path_, "name: mine\nrules:\n" + rules);
   }
   ~RuleFile() { std::filesystem::remove(path_); }
