@@ -26,10 +26,32 @@ bool IsSmooth(const std::vector<JointArm>& arms) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) <= kMaxKink_rad;
 }
 
+/// Whether a pipe leaves one of its nodes nearly along another one.
+bool HasTwin(const Network& network, int pipe) {
+  for (const PipeEnd end : {PipeEnd{pipe, false}, PipeEnd{pipe, true}}) {
+    const Vector3d way = network.pipe(pipe).Inward(end.at_to);
+    for (const PipeEnd& other : network.EndsAt(network.NodeAt(end))) {
+      if (other == end) continue;
+      if (way.dot(network.pipe(other.pipe).Inward(other.at_to)) > std::cos(kMinBranching_rad)) return true;
+    }
+  }
+  return false;
+}
+
+/// Pumps stand side by side in drawings: nothing solid passes them, so where they open matters little.
+std::vector<bool> CloseImpassableTwins(const Network& network, std::vector<bool> open) {
+  if (open.empty()) open.assign(network.pipes().size(), true);
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    if (!network.pipes()[i].passable && HasTwin(network, static_cast<int>(i))) open[i] = false;
+  }
+  return open;
+}
+
 }  // namespace
 
-Bore::Bore(const Network& network, std::vector<bool> open) : network_(network), open_(std::move(open)) {
-  Demand(open_.empty() || open_.size() == network.pipes().size(), "a mask names every pipe");
+Bore::Bore(const Network& network, std::vector<bool> open)
+    : network_(network), open_(CloseImpassableTwins(network, std::move(open))) {
+  Demand(open_.size() == network.pipes().size(), "a mask names every pipe");
   for (std::size_t node = 0; node < network.nodes().size(); ++node) {
     joints_.push_back(MakeJoint(static_cast<int>(node)));
   }

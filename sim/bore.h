@@ -37,12 +37,14 @@ struct Joint {
 class Bore {
  public:
   /// Keeps a reference. With `open` given, pipes that are not open do not exist for the ball: their openings
-  /// are grated over at the joint, and what flows through them leaves the joint through its wall.
+  /// are grated over at the joint, and what flows through them leaves the joint through its wall. So are
+  /// pipes that let nothing solid through and leave a node within 0.1 rad of another one (pumps drawn side by
+  /// side).
   explicit Bore(const Network& network, std::vector<bool> open = {});
 
   const Network& network() const { return network_; }
   const Joint& joint(int node) const { return joints_[static_cast<std::size_t>(node)]; }
-  bool open(int pipe) const { return open_.empty() || open_[static_cast<std::size_t>(pipe)]; }
+  bool open(int pipe) const { return open_[static_cast<std::size_t>(pipe)]; }
 
   /// The joint whose other arms are felt at `s_m` of a pipe; null along the rest of it, and at smooth joints.
   const Joint* FindJoint(int pipe, double s_m) const;

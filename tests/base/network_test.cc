@@ -41,6 +41,13 @@ TEST(Network, FindsNodesAndPipesById) {
   EXPECT_EQ(network.EndsAt(1), (std::vector<PipeEnd>{{0, true}, {1, false}}));
 }
 
+TEST(Network, BoreGoesOnBeyondTheEndsOfAPipe) {
+  const Network network = Plan().Build();
+  const Pipe& pipe = network.pipe(0);
+  EXPECT_EQ(pipe.RadiusAt_m(-0.1), pipe.radius_m());
+  EXPECT_EQ(pipe.RadiusAt_m(pipe.length_m + 0.1), pipe.radius_m());
+}
+
 TEST(Network, PipesRunFromNodeToNode) {
   const Network network = Plan().Build();
   const Pipe& pipe = network.pipe(1);
