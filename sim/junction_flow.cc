@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include <Eigen/Cholesky>
 
@@ -17,6 +18,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kFadeLength = 1.5;       // radii
+constexpr double kFineSpacing = 0.15;     // radii
 constexpr double kRegularisation = 1e-9;  // of the mean diagonal of the normal equations
 
 double CalcNormalVelocity(const WallPoint& point, const Vector3d& source) {
@@ -25,50 +27,66 @@ double CalcNormalVelocity(const WallPoint& point, const Vector3d& source) {
   return d.dot(point.normal) / (4 * std::numbers::pi * r2 * std::sqrt(r2));
 }
 
-/// Rows: points, scaled by the root of their area; columns: sources.
+/// Least squares: a row per point, scaled by the root of its area. Conditions: a row per section, the flux
+/// through it. Columns: sources; of the right sides: unit flows.
 struct Equations {
-  MatrixXd rows;
-  MatrixXd targets;  ///< one column per unit flow
-  MatrixXd flux;     ///< through each section, per source
+  MatrixXd rows, targets;
+  MatrixXd flux, flux_targets;
 };
+
+/// Normal velocities at a point per unit of each source.
+Eigen::RowVectorXd CalcRow(const WallPoint& point, const std::vector<Vector3d>& sources) {
+  Eigen::RowVectorXd row(static_cast<Eigen::Index>(sources.size()));
+  for (Eigen::Index j = 0; j < row.size(); ++j) {
+    row[j] = CalcNormalVelocity(point, sources[static_cast<std::size_t>(j)]);
+  }
+  return row;
+}
+
+double SumArea(const std::vector<WallPoint>& points) {
+  return std::accumulate(points.begin(), points.end(), 0.0,
+                         [](double sum, const WallPoint& point) { return sum + point.area_m2; });
+}
 
 Equations MakeEquations(const JunctionWall& wall, const Joint& joint) {
   const auto arms = static_cast<Eigen::Index>(joint.arms.size());
   const auto sources = static_cast<Eigen::Index>(wall.sources.size());
+  const auto sections = static_cast<Eigen::Index>(wall.sections.size());
   auto count = static_cast<Eigen::Index>(wall.wall.size());
-  for (const auto& section : wall.sections) count += static_cast<Eigen::Index>(section.size());
-  Equations e{MatrixXd(count, sources), MatrixXd::Zero(count, arms), MatrixXd::Zero(arms, sources)};
-  double wall_area = 0;
-  for (const WallPoint& point : wall.wall) wall_area += point.area_m2;
-
-  Eigen::Index row = 0;
-  const auto add = [&](const WallPoint& point) {
-    const double root = std::sqrt(point.area_m2);
-    for (Eigen::Index j = 0; j < sources; ++j) {
-      e.rows(row, j) = root * CalcNormalVelocity(point, wall.sources[static_cast<std::size_t>(j)]);
-    }
-    return root;
-  };
-  for (const WallPoint& point : wall.wall) {
-    const double root = add(point);
-    e.targets.row(row++).setConstant(-root / wall_area);
+  for (const ArmSection& section : wall.sections) {
+    if (section.to_end_m == 0) count += static_cast<Eigen::Index>(section.points.size());
   }
-  for (Eigen::Index i = 0; i < arms; ++i) {
-    const JointArm& arm = joint.arms[static_cast<std::size_t>(i)];
-    const double area = std::numbers::pi * arm.radius_m * arm.radius_m;
-    for (const WallPoint& point : wall.sections[static_cast<std::size_t>(i)]) {
-      const double root = add(point);
-      e.flux.row(i) += root * e.rows.row(row);
-      e.targets(row++, i) = root / area;
+  Equations e{MatrixXd(count, sources), MatrixXd::Zero(count, arms), MatrixXd::Zero(sections, sources),
+              MatrixXd::Zero(sections, arms)};
+  const double influx = 1 / SumArea(wall.wall);
+  Eigen::Index row = 0;
+  for (const WallPoint& point : wall.wall) {
+    const double root = std::sqrt(point.area_m2);
+    e.rows.row(row) = root * CalcRow(point, wall.sources);
+    e.targets.row(row++).setConstant(-root * influx);
+  }
+  for (Eigen::Index k = 0; k < sections; ++k) {
+    const ArmSection& section = wall.sections[static_cast<std::size_t>(k)];
+    const auto arm = static_cast<Eigen::Index>(section.arm);
+    const double radius = joint.arms[section.arm].radius_m, pi = std::numbers::pi;
+    e.flux_targets.row(k).setConstant(-influx * 2 * pi * radius * section.to_end_m);
+    e.flux_targets(k, arm) += 1;
+    for (const WallPoint& point : section.points) {
+      const Eigen::RowVectorXd velocity = CalcRow(point, wall.sources);
+      e.flux.row(k) += point.area_m2 * velocity;
+      if (section.to_end_m > 0) continue;
+      const double root = std::sqrt(point.area_m2);
+      e.rows.row(row) = root * velocity;
+      e.targets(row++, arm) = root / (pi * radius * radius);
     }
   }
   return e;
 }
 
-/// min |rows q - targets|^2 + mu |q|^2 under flux q = 1, by normal equations and multipliers. The conditions
-/// are imposed twice, which takes the rounding of the first time away.
+/// min |rows q - targets|^2 + mu |q|^2 under flux q = flux_targets, by normal equations and multipliers. The
+/// conditions are imposed thrice, which takes the rounding of the first time away.
 MatrixXd SolveStrengths(const Equations& e) {
-  const Eigen::Index n = e.rows.cols(), arms = e.flux.rows();
+  const Eigen::Index n = e.rows.cols();
   MatrixXd normal = MatrixXd::Zero(n, n);
   normal.selfadjointView<Eigen::Lower>().rankUpdate(e.rows.transpose());
   normal.diagonal().array() += kRegularisation * normal.trace() / static_cast<double>(n);
@@ -77,31 +95,27 @@ MatrixXd SolveStrengths(const Equations& e) {
   const MatrixXd response = factor.solve(e.flux.transpose());
   const Eigen::LDLT<MatrixXd> conditions(e.flux * response);
   MatrixXd q = factor.solve(e.rows.transpose() * e.targets);
-  for (int pass = 0; pass < 3; ++pass) {
-    q += response * conditions.solve(MatrixXd::Identity(arms, arms) - e.flux * q);
-  }
+  for (int pass = 0; pass < 3; ++pass) q += response * conditions.solve(e.flux_targets - e.flux * q);
   return q;
 }
 
-JunctionFit CalcFit(const JunctionWall& wall, const Joint& joint, const Equations& e, const MatrixXd& q) {
-  const double unit = std::numbers::pi * joint.sphere_radius_m * joint.sphere_radius_m;
-  const auto walls = static_cast<Eigen::Index>(wall.wall.size());
-  const MatrixXd error = unit * (e.rows * q - e.targets);
-  JunctionFit fit{static_cast<int>(wall.sources.size()), static_cast<int>(wall.wall.size()), 0, 0, 0};
-  double wall_area = 0, section_area = 0;
-  for (const WallPoint& point : wall.wall) wall_area += point.area_m2;
-  for (const auto& section : wall.sections) {
-    for (const WallPoint& point : section) section_area += point.area_m2;
+/// Normal velocities on a finer wall than the one the strengths were fitted to.
+JunctionFit CalcFit(const JunctionWall& fine, const PointSources& sources, std::span<const double> outflow,
+                    const Joint& joint) {
+  const double area = SumArea(fine.wall);
+  double unit = 0, influx = 0, square = 0;
+  for (std::size_t i = 0; i < outflow.size(); ++i) {
+    const double section = std::numbers::pi * joint.arms[i].radius_m * joint.arms[i].radius_m;
+    unit = std::max(unit, std::abs(outflow[i]) / section);
+    influx += outflow[i];
   }
-  for (Eigen::Index i = 0; i < error.cols(); ++i) {
-    const VectorXd of_wall = error.col(i).head(walls), of_sections = error.col(i).tail(error.rows() - walls);
-    fit.wall_rms = std::max(fit.wall_rms, of_wall.norm() / std::sqrt(wall_area));
-    fit.section_rms = std::max(fit.section_rms, of_sections.norm() / std::sqrt(section_area));
-    for (Eigen::Index k = 0; k < walls; ++k) {
-      const double root = std::sqrt(wall.wall[static_cast<std::size_t>(k)].area_m2);
-      fit.wall_max = std::max(fit.wall_max, std::abs(of_wall[k]) / root);
-    }
+  JunctionFit fit;
+  for (const WallPoint& point : fine.wall) {
+    const double error = sources.EvalVelocity(outflow, point.p_N).dot(point.normal) + influx / area;
+    fit.wall_max = std::max(fit.wall_max, std::abs(error) / unit);
+    square += point.area_m2 * error * error;
   }
+  fit.wall_rms = std::sqrt(square / area) / unit;
   return fit;
 }
 
@@ -121,14 +135,24 @@ JunctionFlow::JunctionFlow(const Joint& joint, std::span<const double> core_m) {
   const JunctionWall wall = MakeJunctionWall(joint, core_m);
   const Equations equations = MakeEquations(wall, joint);
   const MatrixXd strengths = SolveStrengths(equations);
-  fit_ = CalcFit(wall, joint, equations, strengths);
   sources_.emplace(wall.sources, strengths);
   for (std::size_t i = 0; i < core_m.size(); ++i) {
     const double radius = joint.arms[i].radius_m;
     const double fade_m = std::min(kFadeLength * radius, 0.6 * core_m[i]);
     arms_.push_back({MakeArmAxes(joint, i), radius, core_m[i] - fade_m, core_m[i], {}});
   }
+  const JunctionWall fine = MakeJunctionWall(joint, core_m, kFineSpacing);
   std::vector<double> unit(arms_.size());
+  for (std::size_t i = 0; i < arms_.size(); ++i) {
+    unit.assign(arms_.size(), 0);
+    unit[i] = 1;
+    unit[i == 0 ? 1 : 0] = -1;
+    const JunctionFit fit = CalcFit(fine, *sources_, unit, joint);
+    fit_.wall_rms = std::max(fit_.wall_rms, fit.wall_rms);
+    fit_.wall_max = std::max(fit_.wall_max, fit.wall_max);
+  }
+  fit_.sources = static_cast<int>(wall.sources.size());
+  fit_.wall_points = static_cast<int>(wall.wall.size());
   for (Arm& arm : arms_) {
     for (std::size_t i = 0; i < arms_.size(); ++i) {
       unit.assign(arms_.size(), 0);

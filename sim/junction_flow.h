@@ -11,14 +11,14 @@
 
 namespace piperun::sim {
 
-/// How well the potential of a joint meets its walls.
+/// How well the potential of a joint keeps to its walls: the normal velocity it leaves there, in Q/(pi R^2)
+/// of the arm that carries the most, worst of the flows from one arm to another; on a wall of finer patches
+/// than the one it was fitted to.
 struct JunctionFit {
   int sources = 0;
   int wall_points = 0;
-  double wall_rms = 0;  ///< of the normal velocity's error, worst of the arms' unit flows, in Q / (pi R^2) of
-                        ///< the joint's widest bore
+  double wall_rms = 0;
   double wall_max = 0;
-  double section_rms = 0;  ///< of the velocity through the end sections
 };
 
 /// Potential flow through a joint, for any outflows Q_i from the node into its arms:
@@ -31,9 +31,10 @@ struct JunctionFit {
 ///
 /// Phi_i is a sum of point sources outside the water (method of fundamental solutions; Fairweather &
 /// Karageorghis, Adv. Comput. Math. 9, 69 (1998)), found by least squares over walls and end sections under
-/// the exact condition that the flux through each section is the given one. So mass is conserved to rounding,
-/// divergence and rotation vanish everywhere; what is approximate is that walls are tangent (fit()). The
-/// lip's corner is rounded by about a quarter of the radius.
+/// the exact condition that the flux through sections along each arm is the given one. So mass is conserved
+/// to rounding, divergence and rotation vanish everywhere; what is approximate is that walls are tangent
+/// (fit()). Lips are rounded (sim/junction_wall.h): at a sharp one the potential flow would be infinitely
+/// fast.
 ///
 /// Along the last 1.5 radii of an arm the potential flow fades into the uniform one, chi(z) from 1 to 0:
 ///
@@ -49,7 +50,7 @@ class JunctionFlow {
   /// Whether the joint's arms are far enough from parallel.
   static bool Covers(const Joint& joint);
 
-  /// `core_m` per arm, > 0. Costs 10 to 60 ms.
+  /// `core_m` per arm, > 0. Costs 30 to 200 ms.
   JunctionFlow(const Joint& joint, std::span<const double> core_m);
 
   /// Velocity at p_N (from the node, axes of W), seen from arm `arm`: up to the arm's end section.
