@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include <Eigen/Cholesky>
 
@@ -26,50 +27,66 @@ double CalcNormalVelocity(const WallPoint& point, const Vector3d& source) {
   return d.dot(point.normal) / (4 * std::numbers::pi * r2 * std::sqrt(r2));
 }
 
-/// Rows: points, scaled by the root of their area; columns: sources.
+/// Least squares: a row per point, scaled by the root of its area. Conditions: a row per section, the flux
+/// through it. Columns: sources; of the right sides: unit flows.
 struct Equations {
-  MatrixXd rows;
-  MatrixXd targets;  ///< one column per unit flow
-  MatrixXd flux;     ///< through each section, per source
+  MatrixXd rows, targets;
+  MatrixXd flux, flux_targets;
 };
+
+/// Normal velocities at a point per unit of each source.
+Eigen::RowVectorXd CalcRow(const WallPoint& point, const std::vector<Vector3d>& sources) {
+  Eigen::RowVectorXd row(static_cast<Eigen::Index>(sources.size()));
+  for (Eigen::Index j = 0; j < row.size(); ++j) {
+    row[j] = CalcNormalVelocity(point, sources[static_cast<std::size_t>(j)]);
+  }
+  return row;
+}
+
+double SumArea(const std::vector<WallPoint>& points) {
+  return std::accumulate(points.begin(), points.end(), 0.0,
+                         [](double sum, const WallPoint& point) { return sum + point.area_m2; });
+}
 
 Equations MakeEquations(const JunctionWall& wall, const Joint& joint) {
   const auto arms = static_cast<Eigen::Index>(joint.arms.size());
   const auto sources = static_cast<Eigen::Index>(wall.sources.size());
+  const auto sections = static_cast<Eigen::Index>(wall.sections.size());
   auto count = static_cast<Eigen::Index>(wall.wall.size());
-  for (const auto& section : wall.sections) count += static_cast<Eigen::Index>(section.size());
-  Equations e{MatrixXd(count, sources), MatrixXd::Zero(count, arms), MatrixXd::Zero(arms, sources)};
-  double wall_area = 0;
-  for (const WallPoint& point : wall.wall) wall_area += point.area_m2;
-
-  Eigen::Index row = 0;
-  const auto add = [&](const WallPoint& point) {
-    const double root = std::sqrt(point.area_m2);
-    for (Eigen::Index j = 0; j < sources; ++j) {
-      e.rows(row, j) = root * CalcNormalVelocity(point, wall.sources[static_cast<std::size_t>(j)]);
-    }
-    return root;
-  };
-  for (const WallPoint& point : wall.wall) {
-    const double root = add(point);
-    e.targets.row(row++).setConstant(-root / wall_area);
+  for (const ArmSection& section : wall.sections) {
+    if (section.to_end_m == 0) count += static_cast<Eigen::Index>(section.points.size());
   }
-  for (Eigen::Index i = 0; i < arms; ++i) {
-    const JointArm& arm = joint.arms[static_cast<std::size_t>(i)];
-    const double area = std::numbers::pi * arm.radius_m * arm.radius_m;
-    for (const WallPoint& point : wall.sections[static_cast<std::size_t>(i)]) {
-      const double root = add(point);
-      e.flux.row(i) += root * e.rows.row(row);
-      e.targets(row++, i) = root / area;
+  Equations e{MatrixXd(count, sources), MatrixXd::Zero(count, arms), MatrixXd::Zero(sections, sources),
+              MatrixXd::Zero(sections, arms)};
+  const double influx = 1 / SumArea(wall.wall);
+  Eigen::Index row = 0;
+  for (const WallPoint& point : wall.wall) {
+    const double root = std::sqrt(point.area_m2);
+    e.rows.row(row) = root * CalcRow(point, wall.sources);
+    e.targets.row(row++).setConstant(-root * influx);
+  }
+  for (Eigen::Index k = 0; k < sections; ++k) {
+    const ArmSection& section = wall.sections[static_cast<std::size_t>(k)];
+    const auto arm = static_cast<Eigen::Index>(section.arm);
+    const double radius = joint.arms[section.arm].radius_m, pi = std::numbers::pi;
+    e.flux_targets.row(k).setConstant(-influx * 2 * pi * radius * section.to_end_m);
+    e.flux_targets(k, arm) += 1;
+    for (const WallPoint& point : section.points) {
+      const Eigen::RowVectorXd velocity = CalcRow(point, wall.sources);
+      e.flux.row(k) += point.area_m2 * velocity;
+      if (section.to_end_m > 0) continue;
+      const double root = std::sqrt(point.area_m2);
+      e.rows.row(row) = root * velocity;
+      e.targets(row++, arm) = root / (pi * radius * radius);
     }
   }
   return e;
 }
 
-/// min |rows q - targets|^2 + mu |q|^2 under flux q = 1, by normal equations and multipliers. The conditions
-/// are imposed twice, which takes the rounding of the first time away.
+/// min |rows q - targets|^2 + mu |q|^2 under flux q = flux_targets, by normal equations and multipliers. The
+/// conditions are imposed thrice, which takes the rounding of the first time away.
 MatrixXd SolveStrengths(const Equations& e) {
-  const Eigen::Index n = e.rows.cols(), arms = e.flux.rows();
+  const Eigen::Index n = e.rows.cols();
   MatrixXd normal = MatrixXd::Zero(n, n);
   normal.selfadjointView<Eigen::Lower>().rankUpdate(e.rows.transpose());
   normal.diagonal().array() += kRegularisation * normal.trace() / static_cast<double>(n);
@@ -78,22 +95,20 @@ MatrixXd SolveStrengths(const Equations& e) {
   const MatrixXd response = factor.solve(e.flux.transpose());
   const Eigen::LDLT<MatrixXd> conditions(e.flux * response);
   MatrixXd q = factor.solve(e.rows.transpose() * e.targets);
-  for (int pass = 0; pass < 3; ++pass) {
-    q += response * conditions.solve(MatrixXd::Identity(arms, arms) - e.flux * q);
-  }
+  for (int pass = 0; pass < 3; ++pass) q += response * conditions.solve(e.flux_targets - e.flux * q);
   return q;
 }
 
 /// Normal velocities on a finer wall than the one the strengths were fitted to.
 JunctionFit CalcFit(const JunctionWall& fine, const PointSources& sources, std::span<const double> outflow,
                     const Joint& joint) {
-  double unit = 0, area = 0, influx = 0, square = 0;
+  const double area = SumArea(fine.wall);
+  double unit = 0, influx = 0, square = 0;
   for (std::size_t i = 0; i < outflow.size(); ++i) {
     const double section = std::numbers::pi * joint.arms[i].radius_m * joint.arms[i].radius_m;
     unit = std::max(unit, std::abs(outflow[i]) / section);
     influx += outflow[i];
   }
-  for (const WallPoint& point : fine.wall) area += point.area_m2;
   JunctionFit fit;
   for (const WallPoint& point : fine.wall) {
     const double error = sources.EvalVelocity(outflow, point.p_N).dot(point.normal) + influx / area;

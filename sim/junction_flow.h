@@ -31,9 +31,10 @@ struct JunctionFit {
 ///
 /// Phi_i is a sum of point sources outside the water (method of fundamental solutions; Fairweather &
 /// Karageorghis, Adv. Comput. Math. 9, 69 (1998)), found by least squares over walls and end sections under
-/// the exact condition that the flux through each section is the given one. So mass is conserved to rounding,
-/// divergence and rotation vanish everywhere; what is approximate is that walls are tangent (fit()): at a lip
-/// the flow cuts the corner as if it were rounded by about half the radius.
+/// the exact condition that the flux through sections along each arm is the given one. So mass is conserved
+/// to rounding, divergence and rotation vanish everywhere; what is approximate is that walls are tangent
+/// (fit()). Lips are rounded (sim/junction_wall.h): at a sharp one the potential flow would be infinitely
+/// fast.
 ///
 /// Along the last 1.5 radii of an arm the potential flow fades into the uniform one, chi(z) from 1 to 0:
 ///
@@ -49,7 +50,7 @@ class JunctionFlow {
   /// Whether the joint's arms are far enough from parallel.
   static bool Covers(const Joint& joint);
 
-  /// `core_m` per arm, > 0. Costs 10 to 60 ms.
+  /// `core_m` per arm, > 0. Costs 30 to 200 ms.
   JunctionFlow(const Joint& joint, std::span<const double> core_m);
 
   /// Velocity at p_N (from the node, axes of W), seen from arm `arm`: up to the arm's end section.

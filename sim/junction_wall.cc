@@ -19,6 +19,7 @@ constexpr double kPatchArea = 0.5;    // largest, in squares of the distance fro
 constexpr int kFinest = 3;            // times a patch may be halved
 constexpr double kOrdinaryArea = 75;  // of the tubes, each in squares of its own radius
 constexpr int kSectionAngles = 24;
+constexpr int kSections = 3;
 constexpr std::array<double, 5> kGaussPoint{0.04691007703066802, 0.23076534494715845, 0.5, 0.7692346550528415,
                                             0.953089922969332};
 constexpr std::array<double, 5> kGaussWeight{0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
@@ -31,19 +32,20 @@ struct Distance {
   double radius_m = 0;
 };
 
-/// Of a tube with flat ends that begins at the node; negative inside.
+/// Of a tube that begins at the node with a hemisphere (so that tubes in line have no seam) and ends flat;
+/// negative inside.
 Distance CalcTubeDistance(const JointArm& arm, double length_m, const Vector3d& p) {
-  const double along = p.dot(arm.outward);
+  const double along = p.dot(arm.outward), from_node = p.norm();
+  if (along <= 0 && from_node > 0) return {from_node - arm.radius_m, p / from_node, arm.radius_m};
   const Vector3d across = p - along * arm.outward;
-  const double off_axis = across.norm();
+  const double off_axis = across.norm(), beside = off_axis - arm.radius_m, beyond = along - length_m;
   const Vector3d out = off_axis > 0 ? Vector3d(across / off_axis) : arm.outward.unitOrthogonal();
-  const double beside = off_axis - arm.radius_m, beyond = std::max(-along, along - length_m);
-  const Vector3d forth = along < 0.5 * length_m ? Vector3d(-arm.outward) : arm.outward;
   if (beside <= 0 || beyond <= 0) {
-    return beside > beyond ? Distance{beside, out, arm.radius_m} : Distance{beyond, forth, arm.radius_m};
+    return beside > beyond ? Distance{beside, out, arm.radius_m}
+                           : Distance{beyond, arm.outward, arm.radius_m};
   }
   const double distance = std::hypot(beside, beyond);
-  return {distance, (beside * out + beyond * forth) / distance, arm.radius_m};
+  return {distance, (beside * out + beyond * arm.outward) / distance, arm.radius_m};
 }
 
 /// Distance from the union of two bodies whose crease is filled with a fillet: the polynomial smooth minimum
@@ -85,7 +87,7 @@ class Builder {
     AddSphereSources();
     for (std::size_t i = 0; i < joint_.arms.size(); ++i) {
       AddTube(i);
-      AddSection(i);
+      AddSections(i);
     }
     AddSphere();
     return std::move(result_);
@@ -220,18 +222,30 @@ class Builder {
     }
   }
 
-  void AddSection(std::size_t i) {
+  void AddSections(std::size_t i) {
+    const double begin_m = std::max(joint_.arms[i].reach_m + joint_.arms[i].radius_m, 0.4 * core_m_[i]);
+    if (begin_m >= core_m_[i]) {  // too short for more than its end
+      result_.sections.push_back({i, 0, MakeSection(i, core_m_[i])});
+      return;
+    }
+    for (int k = 0; k < kSections; ++k) {
+      const double to_end_m = (core_m_[i] - begin_m) * (kSections - 1 - k) / (kSections - 1);
+      result_.sections.push_back({i, to_end_m, MakeSection(i, core_m_[i] - to_end_m)});
+    }
+  }
+
+  std::vector<WallPoint> MakeSection(std::size_t i, double z) const {
     const double radius = joint_.arms[i].radius_m;
     const Matrix3d axes = MakeArmAxes(joint_, i);
     std::vector<WallPoint> section;
     for (std::size_t k = 0; k < kGaussPoint.size(); ++k) {
       const double r = radius * kGaussPoint[k];
       const double area = 2 * pi * r * radius * kGaussWeight[k] / kSectionAngles;
-      ForRing(axes, core_m_[i], r, kSectionAngles, [&](const Vector3d& p, const Vector3d&) {
+      ForRing(axes, z, r, kSectionAngles, [&](const Vector3d& p, const Vector3d&) {
         section.push_back({p, axes.col(2), area});
       });
     }
-    result_.sections.push_back(std::move(section));
+    return section;
   }
 
   void AddTubeSources(std::size_t i) {
