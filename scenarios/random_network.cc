@@ -17,6 +17,7 @@ using std::numbers::pi;
 
 constexpr double kFeedLength_m = 2;
 constexpr double kPressureHead_m = 30;
+constexpr double kFastest_m_s = 1.5;
 constexpr double kMinAngle_rad = 35 * pi / 180;
 
 /// Draws one number after the other.
@@ -114,19 +115,32 @@ Plan DrawPlan(Dice& dice, double first_bore_m) {
   return plan;
 }
 
-/// Half of the ends draw water, at least one does; together they draw `flow_m3_s`.
-void DrawDemands(Dice& dice, double flow_m3_s, Plan& plan) {
-  double sum = 0;
-  Knot* last = nullptr;
-  for (std::size_t i = 2; i < plan.knots.size(); ++i) {
-    if (plan.knots[i].ways.size() != 1) continue;
-    last = &plan.knots[i];
-    last->demand_m3_s = dice.Chance(0.5) ? dice.Between(0.2, 1) : 0;
-    sum += last->demand_m3_s;
+/// Bore of the narrowest pipe between the launch and every knot.
+std::vector<double> FindNarrowest(const Plan& plan) {
+  std::vector<double> narrowest_m(plan.knots.size(), 1);
+  for (const Tube& tube :
+       plan.tubes) {  // pipes come after those that lead to them; a loop's last adds nothing
+    const double bore_m = std::min(narrowest_m[tube.from], tube.diameter_m);
+    if (narrowest_m[tube.to] == 1) narrowest_m[tube.to] = bore_m;
   }
-  if (!last) last = &plan.knots.back();  // all ends joined into a loop
-  if (sum == 0) sum = last->demand_m3_s = 1;
-  for (Knot& knot : plan.knots) knot.demand_m3_s *= flow_m3_s / sum;
+  return narrowest_m;
+}
+
+/// Half of the ends draw water, at least one does, and none faster than kFastest_m_s through any pipe on the
+/// way; the first pipe carries `flow_m3_s` or as much of it as that leaves.
+void DrawDemands(Dice& dice, double flow_m3_s, Plan& plan) {
+  const std::vector<double> narrowest_m = FindNarrowest(plan);
+  double sum_m3_s = 0;
+  for (std::size_t i = 2; i < plan.knots.size(); ++i) {
+    Knot& knot = plan.knots[i];
+    const bool is_end = knot.ways.size() == 1, is_last = i + 1 == plan.knots.size();
+    const bool draws = (is_end && dice.Chance(0.5)) || (is_last && sum_m3_s == 0);
+    if (!draws) continue;
+    knot.demand_m3_s = dice.Between(0.2, 1) * kFastest_m_s * pi / 4 * narrowest_m[i] * narrowest_m[i];
+    sum_m3_s += knot.demand_m3_s;
+  }
+  // ends share pipes: all together through the first one's bore is the most that any pipe may see
+  for (Knot& knot : plan.knots) knot.demand_m3_s *= std::min(1.0, flow_m3_s / sum_m3_s);
 }
 
 std::string Point(double x, double y) { return FormatNumber(x) + " " + FormatNumber(y); }
@@ -175,7 +189,7 @@ Scenario MakeScenario(std::string inp) {
   scenario.network.map_unit_m = 1;
   scenario.mission.launch = "N1";
   scenario.mission.time_limit_s = 60;
-  scenario.mission.stuck_after_s = 20;
+  scenario.mission.stuck_after_s = 10;
   return scenario;
 }
 

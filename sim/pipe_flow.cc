@@ -179,7 +179,8 @@ DiscMean DiscMeanTable::EvalTurbulent(double exponent, double offset) const {
   return mean;
 }
 
-DiscMean DiscMeanTable::Eval(const VelocityProfile& profile, double offset) const {
+DiscMean DiscMeanTable::Eval(const VelocityProfile& profile, double offset_from_axis) const {
+  const double offset = std::min(offset_from_axis, 1 - lambda_);
   const double turbulent = profile.turbulent_fraction;
   DiscMean mean;
   if (turbulent > 0) mean = EvalTurbulent(profile.exponent, offset);

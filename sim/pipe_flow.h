@@ -38,11 +38,12 @@ struct DiscMean {
 ///
 /// (Nikuradse; Schlichting, Boundary-Layer Theory, ch. XX), tabulated at construction and interpolated by
 /// cubics: error below 1e-4 of U. Laminar: 2 (1 - offset^2 - lambda^2/2), exact.
-/// Range: 0 < lambda <= 0.95, 0 <= offset <= 1 - lambda (touching), n in [3, 14] (aborts outside).
+/// Range: 0 < lambda <= 0.95, 0 <= offset, n in [3, 14] (aborts outside). The ball touches at 1 - lambda;
+/// farther out, where a joint or a closed end gives it more room than the pipe, it sees what it saw there.
 class DiscMeanTable {
  public:
   explicit DiscMeanTable(double lambda);
-  DiscMean Eval(const VelocityProfile& profile, double offset) const;
+  DiscMean Eval(const VelocityProfile& profile, double offset_from_axis) const;
   /// Integral of velocity times offset from the axis to `offset`: the stream function of what the ball sees.
   /// The primitive of Eval's very interpolant, so that a flow made of both conserves mass to rounding.
   double EvalFlux(const VelocityProfile& profile, double offset) const;

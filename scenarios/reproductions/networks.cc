@@ -20,7 +20,7 @@ constexpr int kNetworks = 10000;
 constexpr int kTurnsInY = 2000;
 constexpr int kTurnsPerShare = 400;
 constexpr std::array kShares{0.05, 0.15, 0.3, 0.5, 0.7, 0.85, 0.95};
-constexpr double kOverlap_m = 1e-6;
+constexpr double kOverlap_m = 2e-5;  // (v dt)^2 / (2 r): by so much a step of 1 mm leaves a sphere of 30 mm
 
 int Sized(int runs, double size) { return std::max(1, static_cast<int>(std::lround(runs * size))); }
 
