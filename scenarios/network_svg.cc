@@ -6,6 +6,12 @@
 #include <limits>
 #include <numbers>
 
+#include "base/water.h"
+#include "scenarios/inp_network.h"
+#include "scenarios/network_params.h"
+#include "sim/downstream.h"
+#include "sim/network/network_flow.h"
+
 namespace piperun::scenarios {
 namespace {
 
@@ -150,6 +156,22 @@ std::string DrawNetworkSvg(const Network& network, const sim::FlowTimeline& flow
            "</title></path>\n";
   }
   return svg + "</svg>\n";
+}
+
+std::string DrawModelSvg(const sim::HydraulicModel& model, const sim::HydraulicState& state,
+                         std::optional<int> from, std::optional<int> to, double ball_diameter_m) {
+  const Network network = MakeNetwork(DrawNetwork(model, {}).network);
+  const std::vector<sim::HydraulicStep> steps{{0, true, {}, state}};
+  const sim::FlowTimeline flow =
+      sim::MakeFlowTimeline(sim::InsertLeaks(model, {}), steps, 0, network, CalcWater(10));
+  NetworkSvgContent content{model.name, {}, {}};
+  if (from && to) {
+    const sim::Bore bore(network);
+    const sim::Downstream downstream(bore, flow, TrueTime{});
+    content.way =
+        downstream.FindFastestWay(*from, *to, 0.5 * ball_diameter_m).value_or(std::vector<RouteLeg>{});
+  }
+  return DrawNetworkSvg(network, flow, TrueTime{}, content);
 }
 
 }  // namespace piperun::scenarios

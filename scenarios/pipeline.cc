@@ -156,13 +156,15 @@ class InpPipeline {
             stops_.launch,
             stops_.retrieve,
             std::move(plan),
-            std::move(notes)};
+            std::move(notes),
+            std::move(flow.model)};
   }
 
  private:
   struct Flow {
     sim::FlowTimeline timeline;
     std::vector<LeakState> leaks;
+    sim::HydraulicModel model;
   };
   Flow Solve(const std::vector<Leak>& leaks) const {
     const double launch_s = scenario_.flow.launch_time_s;
@@ -171,10 +173,12 @@ class InpPipeline {
       throw InputError(FormatNumber(launch_s) + " s is not allowed; hydraulics count whole seconds",
                        "flow.launch_time_s");
     }
-    const sim::LeakyModel leaky = sim::InsertLeaks(model_, MakePipeLeaks(leaks));
+    sim::LeakyModel leaky = sim::InsertLeaks(model_, MakePipeLeaks(leaks));
     const auto steps = SolvePeriod(leaky.model, launch_s + scenario_.mission.time_limit_s);
-    return {sim::MakeFlowTimeline(leaky, steps, launch, network_, water_),
-            sim::CalcLeakStates(leaky, steps, launch, TrueTime{}, water_, scenario_.gravity_m_s2)};
+    sim::FlowTimeline timeline = sim::MakeFlowTimeline(leaky, steps, launch, network_, water_);
+    std::vector<LeakState> states =
+        sim::CalcLeakStates(leaky, steps, launch, TrueTime{}, water_, scenario_.gravity_m_s2);
+    return {std::move(timeline), std::move(states), std::move(leaky.model)};
   }
 
   std::vector<sim::PipeLeak> MakePipeLeaks(const std::vector<Leak>& leaks) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "base/water.h"
 #include "scenarios/scenario.h"
 #include "sim/flow_timeline.h"
+#include "sim/network/model.h"
 
 namespace piperun::scenarios {
 
@@ -19,9 +21,10 @@ struct Pipeline {
   std::vector<Leak> leaks;             ///< those listed, then those drawn
   std::vector<LeakState> leak_states;  ///< at the launch
   int launch_node = 0;
-  int retrieve_node = -1;          ///< -1: wherever the water takes the ball
-  std::vector<RouteLeg> plan;      ///< the way the crew expects
-  std::vector<std::string> notes;  ///< what was assumed where the file is silent
+  int retrieve_node = -1;                         ///< -1: wherever the water takes the ball
+  std::vector<RouteLeg> plan;                     ///< the way the crew expects
+  std::vector<std::string> notes;                 ///< what was assumed where the file is silent
+  std::optional<sim::HydraulicModel> hydraulics{};  ///< of an EPANET file, with the leaks in it
 };
 
 /// Thrown when the hydraulics of a network do not converge; a run then has the status hydraulics_diverged.

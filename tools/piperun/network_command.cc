@@ -7,9 +7,14 @@
 #include "base/check.h"
 #include "base/number.h"
 #include "base/params.h"
+#include "base/water.h"
+#include "scenarios/embedded.h"
+#include "scenarios/load.h"
 #include "scenarios/nearest_name.h"
 #include "scenarios/network_report.h"
+#include "scenarios/network_svg.h"
 #include "scenarios/output_file.h"
+#include "scenarios/pipeline.h"
 #include "sim/network/inp_reader.h"
 #include "tools/piperun/ball_way_text.h"
 #include "tools/piperun/command.h"
@@ -24,7 +29,7 @@ struct NetworkArguments {
   bool extended = false;
   bool csv = false;
   bool all = false;
-  std::string accuracy, ball_mm, from, to;
+  std::string accuracy, ball_mm, from, to, svg;
 };
 
 double ReadOption(const std::string& text, const char* option, const Range& range) {
@@ -64,6 +69,32 @@ sim::HydraulicModel LoadNetwork(const std::string& path) {
   const auto size = std::filesystem::file_size(path, ignored);
   if (!ignored && size > sim::kMaxInpBytes) sim::RefuseSize(size, path);
   return sim::ReadInp(scenarios::ReadTextFile(path), path);
+}
+
+/// What a scenario's EPANET file becomes with the scenario's leaks in it.
+sim::HydraulicModel LoadScenarioNetwork(const std::string& name) {
+  const scenarios::Scenario scenario = scenarios::LoadScenario(name);
+  if (scenario.network.inp.empty()) {
+    throw InputError(
+        "this scenario writes its pipes down, and they carry one flow in series; only networks from "
+        "EPANET files are solved",
+        "network", name);
+  }
+  return *scenarios::BuildPipeline(scenario, CalcWater(scenario.water.temperature_C)).hydraulics;
+}
+
+/// An EPANET file, one of our own networks by name, or a scenario.
+sim::HydraulicModel Load(const std::string& name) {
+  const std::filesystem::path path(name);
+  if (path.extension() == ".yaml" || path.extension() == ".yml") return LoadScenarioNetwork(name);
+  if (std::filesystem::exists(path)) return LoadNetwork(name);
+  const auto is_named = [&](const scenarios::EmbeddedFile& file) { return file.name == name; };
+  const auto& networks = scenarios::EmbeddedNetworks();
+  const auto own = std::find_if(networks.begin(), networks.end(), is_named);
+  if (own != networks.end()) return sim::ReadInp(own->text, name);
+  const auto& catalogue = scenarios::EmbeddedScenarios();
+  if (std::any_of(catalogue.begin(), catalogue.end(), is_named)) return LoadScenarioNetwork(name);
+  return LoadNetwork(name);
 }
 
 scenarios::NetworkSolution Solve(const sim::HydraulicModel& model, const NetworkArguments& arguments,
@@ -111,6 +142,11 @@ int ReportNetwork(sim::HydraulicModel model, const NetworkArguments& arguments, 
   const scenarios::BallQuestion question = ReadQuestion(model, arguments);
   const scenarios::NetworkSolution solution = Solve(model, arguments, display);
   Print(model, solution, question, arguments, display);
+  if (!arguments.svg.empty()) {
+    scenarios::WriteTextFile(arguments.svg,
+                             scenarios::DrawModelSvg(model, solution.steps.front().state, question.from,
+                                                     question.to, question.ball_diameter_m));
+  }
   if (!solution.converged()) {
     fmt::print(stderr, "piperun: {}: {}\n", model.name, solution.problem);
     return kFailed;
@@ -134,7 +170,11 @@ constexpr const char* kFooter =
 void AddNetworkCommand(CLI::App& app, Display& display, int& exit_code) {
   auto arguments = std::make_shared<NetworkArguments>();
   CLI::App* command = app.add_subcommand("network", "Solve an EPANET network: heads, flows, ways of a ball");
-  command->add_option("FILE", arguments->file, "EPANET 2.2 or 2.3 input file (.inp)")->required();
+  command
+      ->add_option(
+          "FILE", arguments->file,
+          "EPANET 2.2 or 2.3 input file (.inp), one of piperun's own networks by name, or a scenario on one")
+      ->required();
   command->add_flag("--extended", arguments->extended,
                     "The whole period, every reporting step (default: t = 0)");
   command->add_option("--accuracy", arguments->accuracy, "Instead of the file's ACCURACY, in (0, 0.1]");
@@ -142,11 +182,13 @@ void AddNetworkCommand(CLI::App& app, Display& display, int& exit_code) {
   CLI::Option* from =
       command->add_option("--from", arguments->from, "Tell where the water takes the ball from this node");
   command->add_option("--to", arguments->to, "Tell the fastest way to this node")->needs(from);
+  command->add_option("--svg", arguments->svg,
+                      "Draw the network in plan, with --from and --to the way between");
   command->add_flag("--all", arguments->all, "Print tables in full");
   command->add_flag("--csv", arguments->csv, "Print results as CSV");
   command->footer(kFooter);
   command->callback([arguments, &display, &exit_code] {
-    exit_code = ReportNetwork(LoadNetwork(arguments->file), *arguments, display);
+    exit_code = ReportNetwork(Load(arguments->file), *arguments, display);
   });
 }
 
