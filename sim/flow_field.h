@@ -55,7 +55,7 @@ class FlowField {
             double ball_radius_m);
 
   /// Flow at `spot` for a ball centred at p_L, in the drawing of the spot's pipe. Bores and joints are worked
-  /// out when they are met first (1 ms and 10 to 100 ms); nothing else allocates. Not for several threads.
+  /// out when they are met first (1 ms and 20 to 400 ms); nothing else allocates. Not for several threads.
   WaterAtBall Eval(const NetworkSpot& spot, const Vector3d& p_L, TrueTime t) const;
 
   /// The flow of the joint at a node, or null where there is none; for reports.

@@ -1,9 +1,11 @@
 #include "sim/junction_flow.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -17,9 +19,12 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kFadeLength = 1.5;       // radii
-constexpr double kFineSpacing = 0.15;     // radii
-constexpr double kRegularisation = 1e-9;  // of the mean diagonal of the normal equations
+constexpr double kFadeLength = 1.5;    // radii
+constexpr double kFineSpacing = 0.15;  // radii
+// mu, in mean diagonals of the normal equations, tried one after the other until the error between the points
+// of the fit is as small as on them
+constexpr std::array<double, 5> kRegularisation{1e-9, 1e-6, 1e-4, 1e-3, 1e-2};
+constexpr double kGoodFit = 0.8;  // greatest normal velocity, in mean velocities
 
 double CalcNormalVelocity(const WallPoint& point, const Vector3d& source) {
   const Vector3d d = point.p_N - source;
@@ -32,6 +37,7 @@ double CalcNormalVelocity(const WallPoint& point, const Vector3d& source) {
 struct Equations {
   MatrixXd rows, targets;
   MatrixXd flux, flux_targets;
+  MatrixXd normal;  ///< rows^T rows, its lower triangle
 };
 
 /// Normal velocities at a point per unit of each source.
@@ -57,7 +63,7 @@ Equations MakeEquations(const JunctionWall& wall, const Joint& joint) {
     if (section.to_end_m == 0) count += static_cast<Eigen::Index>(section.points.size());
   }
   Equations e{MatrixXd(count, sources), MatrixXd::Zero(count, arms), MatrixXd::Zero(sections, sources),
-              MatrixXd::Zero(sections, arms)};
+              MatrixXd::Zero(sections, arms), MatrixXd::Zero(sources, sources)};
   const double influx = 1 / SumArea(wall.wall);
   Eigen::Index row = 0;
   for (const WallPoint& point : wall.wall) {
@@ -80,16 +86,16 @@ Equations MakeEquations(const JunctionWall& wall, const Joint& joint) {
       e.targets(row++, arm) = root / (pi * radius * radius);
     }
   }
+  e.normal.selfadjointView<Eigen::Lower>().rankUpdate(e.rows.transpose());
   return e;
 }
 
 /// min |rows q - targets|^2 + mu |q|^2 under flux q = flux_targets, by normal equations and multipliers. The
 /// conditions are imposed thrice, which takes the rounding of the first time away.
-MatrixXd SolveStrengths(const Equations& e) {
+MatrixXd SolveStrengths(const Equations& e, double regularisation) {
   const Eigen::Index n = e.rows.cols();
-  MatrixXd normal = MatrixXd::Zero(n, n);
-  normal.selfadjointView<Eigen::Lower>().rankUpdate(e.rows.transpose());
-  normal.diagonal().array() += kRegularisation * normal.trace() / static_cast<double>(n);
+  MatrixXd normal = e.normal;
+  normal.diagonal().array() += regularisation * normal.trace() / static_cast<double>(n);
   const Eigen::LLT<MatrixXd> factor(normal);
   Demand(factor.info() == Eigen::Success, "regularised normal equations are positive definite");
   const MatrixXd response = factor.solve(e.flux.transpose());
@@ -99,7 +105,7 @@ MatrixXd SolveStrengths(const Equations& e) {
   return q;
 }
 
-/// Normal velocities on a finer wall than the one the strengths were fitted to.
+/// Normal velocities on a finer wall than the one the strengths were fitted to, for one flow.
 JunctionFit CalcFit(const JunctionWall& fine, const PointSources& sources, std::span<const double> outflow,
                     const Joint& joint) {
   const double area = SumArea(fine.wall);
@@ -119,6 +125,21 @@ JunctionFit CalcFit(const JunctionWall& fine, const PointSources& sources, std::
   return fit;
 }
 
+/// The worst of the flows from one arm to the next.
+JunctionFit CalcWorstFit(const JunctionWall& fine, const PointSources& sources, const Joint& joint) {
+  const std::size_t arms = joint.arms.size();
+  JunctionFit worst;
+  for (std::size_t i = 0; i + 1 < arms || (i < arms && arms > 2); ++i) {
+    std::vector<double> outflow(arms);
+    outflow[i] = -1;
+    outflow[(i + 1) % arms] = 1;
+    const JunctionFit fit = CalcFit(fine, sources, outflow, joint);
+    worst.wall_rms = std::max(worst.wall_rms, fit.wall_rms);
+    worst.wall_max = std::max(worst.wall_max, fit.wall_max);
+  }
+  return worst;
+}
+
 }  // namespace
 
 bool JunctionFlow::Covers(const Joint& joint) {
@@ -134,25 +155,23 @@ JunctionFlow::JunctionFlow(const Joint& joint, std::span<const double> core_m) {
   Demand(Covers(joint) && core_m.size() == joint.arms.size(), "two arms or more, none parallel");
   const JunctionWall wall = MakeJunctionWall(joint, core_m);
   const Equations equations = MakeEquations(wall, joint);
-  const MatrixXd strengths = SolveStrengths(equations);
-  sources_.emplace(wall.sources, strengths);
+  const JunctionWall fine = MakeJunctionWall(joint, core_m, kFineSpacing);
+  for (const double regularisation : kRegularisation) {
+    PointSources sources(wall.sources, SolveStrengths(equations, regularisation));
+    const JunctionFit fit = CalcWorstFit(fine, sources, joint);
+    if (sources_ && fit.wall_max >= fit_.wall_max) continue;
+    fit_ = fit;
+    sources_.emplace(std::move(sources));
+    if (fit_.wall_max < kGoodFit) break;
+  }
+  fit_.sources = static_cast<int>(wall.sources.size());
+  fit_.wall_points = static_cast<int>(wall.wall.size());
   for (std::size_t i = 0; i < core_m.size(); ++i) {
     const double radius = joint.arms[i].radius_m;
     const double fade_m = std::min(kFadeLength * radius, 0.6 * core_m[i]);
     arms_.push_back({MakeArmAxes(joint, i), radius, core_m[i] - fade_m, core_m[i], {}});
   }
-  const JunctionWall fine = MakeJunctionWall(joint, core_m, kFineSpacing);
   std::vector<double> unit(arms_.size());
-  for (std::size_t i = 0; i < arms_.size(); ++i) {
-    unit.assign(arms_.size(), 0);
-    unit[i] = 1;
-    unit[i == 0 ? 1 : 0] = -1;
-    const JunctionFit fit = CalcFit(fine, *sources_, unit, joint);
-    fit_.wall_rms = std::max(fit_.wall_rms, fit.wall_rms);
-    fit_.wall_max = std::max(fit_.wall_max, fit.wall_max);
-  }
-  fit_.sources = static_cast<int>(wall.sources.size());
-  fit_.wall_points = static_cast<int>(wall.wall.size());
   for (Arm& arm : arms_) {
     for (std::size_t i = 0; i < arms_.size(); ++i) {
       unit.assign(arms_.size(), 0);

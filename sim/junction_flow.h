@@ -50,7 +50,7 @@ class JunctionFlow {
   /// Whether the joint's arms are far enough from parallel.
   static bool Covers(const Joint& joint);
 
-  /// `core_m` per arm, > 0. Costs 30 to 200 ms.
+  /// `core_m` per arm, > 0. Costs 20 to 400 ms, most where arms meet at sharp angles.
   JunctionFlow(const Joint& joint, std::span<const double> core_m);
 
   /// Velocity at p_N (from the node, axes of W), seen from arm `arm`: up to the arm's end section.

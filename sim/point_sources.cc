@@ -79,7 +79,7 @@ CrossPrimitive PointSources::EvalPrimitive(std::span<const double> weights, cons
     const Lanes reach = r - sigma * z;
     const Lanes i = (r * reach).inverse();
     const Lanes a = sigma * Strength(weights, g) * i;
-    const Lanes b = a * i * (1 + reach / r);
+    const Lanes b = a * i * (1 + reach * reach * i);  // 1 + reach/r
     u += a * x, v += a * y, g0 += a;
     xx += b * x * x, xy += b * x * y, yy += b * y * y;
   }
