@@ -8,6 +8,7 @@
 #include "base/check.h"
 #include "base/number.h"
 #include "scenarios/materials.h"
+#include "sim/network/water_way.h"
 
 namespace piperun::scenarios {
 namespace {
@@ -244,7 +245,7 @@ PipeEntry Drawer::MakePipe(int i) const {
   const sim::PipeLink& pipe = At(model_.pipes, i);
   PipeEntry entry = MakeEntry(i, pipe.id, pipe.diameter_m);
   entry.length_m = pipe.length_m;
-  entry.passable = !IsClosed(pipe.status);
+  entry.passable = !IsClosed(pipe.status) && !pipe.check_valve;
   PipeTraits traits{pipe.tag, pipe.diameter_m, std::nullopt, std::nullopt};
   if (model_.options.law == sim::HeadLossLaw::kHazenWilliams) traits.hazen_williams = pipe.roughness;
   if (model_.options.law == sim::HeadLossLaw::kDarcyWeisbach) traits.sand_roughness_m = pipe.roughness;
@@ -280,19 +281,13 @@ PipeEntry Drawer::MakePump(int i) const {
   return entry;
 }
 
-/// Whether a valve leaves its whole bore open.
-bool IsWideOpen(const sim::ValveLink& valve) {
-  if (valve.status == sim::LinkStatus::kOpen) return true;
-  if (IsClosed(valve.status)) return false;
-  if (valve.kind == sim::ValveKind::kThrottle) return valve.setting <= valve.minor_loss;
-  return valve.kind == sim::ValveKind::kPositional && valve.setting >= 100;
-}
-
 PipeEntry Drawer::MakeValve(int i) const {
   const sim::ValveLink& valve = At(model_.valves, i - model_.first_valve());
   PipeEntry entry = MakeEntry(i, valve.id, valve.diameter_m);
   entry.length_m = CalcFittingLength_m(i, valve.diameter_m);
-  entry.passable = IsWideOpen(valve);
+  const bool fixed = valve.status != sim::LinkStatus::kActive;
+  const double setting = fixed ? std::numeric_limits<double>::quiet_NaN() : valve.setting;
+  entry.passable = sim::IsWideOpen(valve.kind, valve.status, setting, valve.minor_loss);
   SetWall({valve.tag, valve.diameter_m, std::nullopt, std::nullopt}, entry);
   return entry;
 }
@@ -301,7 +296,7 @@ void Drawer::AddNotes(std::vector<std::string>& notes) const {
   const auto check_valves = std::count_if(model_.pipes.begin(), model_.pipes.end(),
                                           [](const sim::PipeLink& pipe) { return pipe.check_valve; });
   if (check_valves > 0) {
-    notes.push_back(std::to_string(check_valves) + " pipes have a check valve, taken to let a ball pass");
+    notes.push_back(std::to_string(check_valves) + " pipes have a check valve, whose flap lets no ball pass");
   }
   if (model_.reservoir_count() > 0) {
     notes.push_back(

@@ -36,9 +36,7 @@ struct InpDrawing {
 /// - Pumps and valves have no length in EPANET: here max(2 D, 1.2 |dz|). D is the valve's bore, of a pump
 /// that of
 ///   the narrowest pipe or valve beside it (of the network, if there is none beside it).
-/// - A ball does not pass pumps, closed links, nor valves that control: PRV, PSV, PBV, FCV and GPV unless
-/// they are
-///   fixed open, TCV and PCV unless they are fully open. Check valves let it pass with the flow.
+/// - A ball does not pass pumps, closed links, check valves, nor valves that control (sim::IsWideOpen).
 /// - Material and wall come from the rules; roughness of the bore from the file when its law is
 /// Darcy-Weisbach,
 ///   else from the material.

@@ -118,6 +118,25 @@ std::vector<RouteLeg> PlanAlongWater(const Scenario& scenario, const Network& ne
   return plan;
 }
 
+/// The model with links as they stand at the launch: what is closed then is closed to the ball.
+sim::HydraulicModel AtLaunch(const sim::HydraulicModel& model, double launch_s) {
+  sim::HydraulicModel at_launch = model;
+  const std::vector<sim::HydraulicStep> steps = SolvePeriod(model, launch_s);
+  std::size_t last = 0;
+  while (last + 1 < steps.size() && static_cast<double>(steps[last + 1].time_s) <= launch_s) ++last;
+  const sim::HydraulicState& state = steps[last].state;
+  std::size_t link = 0;
+  for (sim::PipeLink& pipe : at_launch.pipes) pipe.status = state.status[link++];
+  link += at_launch.pumps.size();
+  for (sim::ValveLink& valve : at_launch.valves) {
+    const bool fixed = std::isnan(state.setting[link]);
+    if (!fixed) valve.setting = state.setting[link];
+    const sim::LinkStatus status = state.status[link++];
+    valve.status = IsClosed(status) || fixed ? status : sim::LinkStatus::kActive;
+  }
+  return at_launch;
+}
+
 MaterialRules ReadRules(const NetworkSource& source) {
   if (source.material_rules.empty()) return {};
   return {source.material_rules_text, source.material_rules};
@@ -130,8 +149,9 @@ class InpPipeline {
       : scenario_(scenario),
         water_(water),
         model_(sim::ReadInp(scenario.network.inp_text, scenario.network.inp)),
-        drawing_(DrawNetwork(model_, {scenario.network.map_unit_m, scenario.network.bend_radius_diameters,
-                                      ReadRules(scenario.network)})),
+        drawing_(DrawNetwork(AtLaunch(model_, scenario.flow.launch_time_s),
+                             {scenario.network.map_unit_m, scenario.network.bend_radius_diameters,
+                              ReadRules(scenario.network)})),
         network_(MakeNetwork(drawing_.network)),
         stops_(FindStops(scenario.mission, network_)) {
     model_.options.accuracy = std::min(model_.options.accuracy, kAccuracy);

@@ -21,9 +21,9 @@ struct Pipeline {
   std::vector<Leak> leaks;             ///< those listed, then those drawn
   std::vector<LeakState> leak_states;  ///< at the launch
   int launch_node = 0;
-  int retrieve_node = -1;                         ///< -1: wherever the water takes the ball
-  std::vector<RouteLeg> plan;                     ///< the way the crew expects
-  std::vector<std::string> notes;                 ///< what was assumed where the file is silent
+  int retrieve_node = -1;                           ///< -1: wherever the water takes the ball
+  std::vector<RouteLeg> plan;                       ///< the way the crew expects
+  std::vector<std::string> notes;                   ///< what was assumed where the file is silent
   std::optional<sim::HydraulicModel> hydraulics{};  ///< of an EPANET file, with the leaks in it
 };
 

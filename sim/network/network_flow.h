@@ -21,8 +21,8 @@ namespace piperun::sim {
 /// ball, not the fall of the heads. Bores are the network's, too; where they differ from the model's, flows
 /// are right and velocities are the network's.
 ///
-/// Throws InputError: no instant, instants that end before the launch ("flow.launch_time_s"), a roughness above
-/// 0.05 bores ("network.pipes").
+/// Throws InputError: no instant, instants that end before the launch ("flow.launch_time_s"), a roughness
+/// above 0.05 bores ("network.pipes").
 FlowTimeline MakeFlowTimeline(const LeakyModel& leaky, std::span<const HydraulicStep> steps,
                               std::int64_t launch_s, const Network& network, const WaterProperties& water);
 

@@ -43,6 +43,13 @@ const char* ObstacleText(Obstacle obstacle) {
   return "";
 }
 
+bool IsWideOpen(ValveKind kind, LinkStatus status, double setting, double minor_loss) {
+  if (IsClosed(status)) return false;
+  if (status == LinkStatus::kOpen && std::isnan(setting)) return true;
+  if (kind == ValveKind::kThrottle) return setting <= minor_loss;
+  return kind == ValveKind::kPositional && setting >= 100;
+}
+
 Obstacle FindObstacle(const HydraulicModel& model, const HydraulicState& state, int link,
                       double ball_diameter_m) {
   if (link >= model.first_pump() && link < model.first_valve()) return Obstacle::kPump;
@@ -51,8 +58,9 @@ Obstacle FindObstacle(const HydraulicModel& model, const HydraulicState& state, 
   if (link < model.first_pump()) {
     return model.pipes[link].check_valve ? Obstacle::kCheckValve : Obstacle::kNone;
   }
-  const bool is_fixed_open = state.status[link] == LinkStatus::kOpen && std::isnan(state.setting[link]);
-  return is_fixed_open ? Obstacle::kNone : Obstacle::kControlValve;
+  const ValveLink& valve = model.valves[link - model.first_valve()];
+  const bool is_open = IsWideOpen(valve.kind, state.status[link], state.setting[link], valve.minor_loss);
+  return is_open ? Obstacle::kNone : Obstacle::kControlValve;
 }
 
 double CalcSpeed_m_s(const HydraulicModel& model, const HydraulicState& state, int link) {

@@ -18,7 +18,11 @@ enum class Obstacle { kNone, kTooNarrow, kClosed, kPump, kCheckValve, kControlVa
 /// "passes", "too narrow", "closed", "pump", "check valve", "control valve".
 const char* ObstacleText(Obstacle obstacle);
 
-/// What is in a ball's way in a link: nothing in an open pipe, or a valve fixed open, of which it fills at
+/// Whether a valve leaves its whole bore open: it is fixed open, a TCV throttles no more than its own minor
+/// loss, or a PCV stands at 100 %.
+bool IsWideOpen(ValveKind kind, LinkStatus status, double setting, double minor_loss);
+
+/// What is in a ball's way in a link: nothing in an open pipe, or a valve wide open, of which it fills at
 /// most kGreatestBallToBore. The impeller of a pump, the flap of a check valve and the seat of a control
 /// valve stop it whether water flows or not.
 Obstacle FindObstacle(const HydraulicModel& model, const HydraulicState& state, int link,
