@@ -114,11 +114,11 @@ IdIndex IndexIds(const std::vector<T>& items, const std::string& list) {
 double Pipe::area_m2() const { return std::numbers::pi * radius_m() * radius_m(); }
 
 double Pipe::RadiusAt_m(double s_m) const {
-  if (s_m < cone_from.length_m) {
+  if (cone_from.length_m > 0 && s_m < cone_from.length_m) {
     return std::lerp(cone_from.end_radius_m, radius_m(), std::max(0.0, s_m) / cone_from.length_m);
   }
   const double to_end_m = length_m - s_m;
-  if (to_end_m < cone_to.length_m) {
+  if (cone_to.length_m > 0 && to_end_m < cone_to.length_m) {
     return std::lerp(cone_to.end_radius_m, radius_m(), std::max(0.0, to_end_m) / cone_to.length_m);
   }
   return radius_m();
