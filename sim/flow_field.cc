@@ -96,6 +96,7 @@ FlowField::Site FlowField::MakeSite(const NetworkSpot& spot, const Vector3d& p_L
 
 WaterAtBall FlowField::Eval(const NetworkSpot& spot, const Vector3d& p_L, TrueTime t) const {
   const Site site = MakeSite(spot, p_L, t);
+  Demand(ball_radius_m_ <= DiscMeanTable::kMaxLambda * site.pipe.RadiusAt_m(spot.s_m), "the ball fits here");
   for (const bool at_to : {false, true}) {
     const double core_m = site.zone(at_to).core_m;
     if (core_m > 0 && site.FromEnd_m(at_to) < core_m) return EvalJunction(site, at_to);
@@ -156,7 +157,10 @@ Jet FlowField::CalcProfileShare(const Site& site) const {
 
 const DiscMeanTable& FlowField::FindOrMakeTable(double radius_m) const {
   std::unique_ptr<DiscMeanTable>& table = tables_[radius_m];
-  if (!table) table = std::make_unique<DiscMeanTable>(ball_radius_m_ / radius_m);
+  if (!table) {
+    const double lambda = std::min(DiscMeanTable::kMaxLambda, ball_radius_m_ / radius_m);
+    table = std::make_unique<DiscMeanTable>(lambda);
+  }
   return *table;
 }
 

@@ -41,6 +41,7 @@ struct DiscMean {
 /// Range: 0 < lambda <= 0.95, 0 <= offset <= 1 - lambda (touching), n in [3, 14] (aborts outside).
 class DiscMeanTable {
  public:
+  static constexpr double kMaxLambda = 0.95;
   explicit DiscMeanTable(double lambda);
   DiscMean Eval(const VelocityProfile& profile, double offset) const;
   /// Integral of velocity times offset from the axis to `offset`: the stream function of what the ball sees.
