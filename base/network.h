@@ -70,7 +70,7 @@ struct Pipe {
 
   double radius_m() const { return 0.5 * diameter_m; }
   double area_m2() const;
-  /// Radius of the bore at s: radius_m() but in the cones.
+  /// Radius of the bore at s: radius_m() but in the cones; beyond an end as at it.
   double RadiusAt_m(double s_m) const;
   double EndS_m(bool at_to) const { return at_to ? length_m : 0; }
   /// Index of the piece of the centreline that holds s; the first or last beyond the ends.

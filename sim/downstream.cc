@@ -39,6 +39,11 @@ bool Downstream::LeadsOn(int pipe, int node) const {
   return next == node || FindFastestWay(next, node, 0).has_value();
 }
 
+bool Downstream::LeadsAway(const Joint& joint) const {
+  return std::any_of(joint.arms.begin(), joint.arms.end(),
+                     [&](const JointArm& arm) { return SpeedInto_m_s(arm.end) > kStillWater_m_s; });
+}
+
 bool Downstream::LeadsIntoNarrower(const Joint& joint, double radius_m) const {
   return std::any_of(joint.arms.begin(), joint.arms.end(), [&](const JointArm& arm) {
     return arm.radius_m < radius_m && SpeedInto_m_s(arm.end) > kStillWater_m_s;

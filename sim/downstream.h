@@ -19,6 +19,8 @@ class Downstream {
 
   /// True when water comes from a pipe to `node` (with node < 0: when it flows in the pipe at all).
   bool LeadsOn(int pipe, int node) const;
+  /// True when water leaves a joint through one of its arms.
+  bool LeadsAway(const Joint& joint) const;
   /// True when water leaves a joint through an arm with a bore below the radius.
   bool LeadsIntoNarrower(const Joint& joint, double radius_m) const;
 

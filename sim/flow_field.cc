@@ -9,8 +9,6 @@
 namespace piperun::sim {
 namespace {
 
-constexpr double kMaxDiameterRatio = 0.95;
-
 using std::numbers::pi;
 
 constexpr double kOnAxis_m = 1e-12;  // closer, the direction away from the axis means nothing
@@ -159,7 +157,8 @@ Jet FlowField::CalcProfileShare(const Site& site) const {
 const DiscMeanTable& FlowField::FindOrMakeTable(double radius_m) const {
   std::unique_ptr<DiscMeanTable>& table = tables_[radius_m];
   // a cone may lead to a bore too narrow for the ball, which then stops short of it
-  if (!table) table = std::make_unique<DiscMeanTable>(std::min(kMaxDiameterRatio, ball_radius_m_ / radius_m));
+  if (!table)
+    table = std::make_unique<DiscMeanTable>(std::min(DiscMeanTable::kMaxLambda, ball_radius_m_ / radius_m));
   return *table;
 }
 

@@ -100,6 +100,7 @@ class FlowField {
   void AddFriction(const Site& site, double share, WaterAtBall& water) const;
 
   Junction& FindOrMakeJunction(int node) const;
+  /// Of a bore; of the narrowest that the ball fits into, where it is narrower: a cone leads there.
   const DiscMeanTable& FindOrMakeTable(double radius_m) const;
   const PipeTables& Tables(int pipe) const;
 

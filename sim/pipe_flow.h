@@ -42,6 +42,7 @@ struct DiscMean {
 /// farther out, where a joint or a closed end gives it more room than the pipe, it sees what it saw there.
 class DiscMeanTable {
  public:
+  static constexpr double kMaxLambda = 0.95;
   explicit DiscMeanTable(double lambda);
   DiscMean Eval(const VelocityProfile& profile, double offset_from_axis) const;
   /// Integral of velocity times offset from the axis to `offset`: the stream function of what the ball sees.

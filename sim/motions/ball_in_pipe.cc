@@ -56,8 +56,9 @@ double LaunchDistance_m(const MotionContext& context) {
   return std::min(clear_m, 0.5 * LaunchPipe(context).length_m);
 }
 
-/// At rest on the invert near the node where chainage begins, moved around the wall by an arc a ~ N(0, lateral_sd): the
-/// angle is a/R. B: x along the pipe, z against gravity across the pipe, y = z x x to the left.
+/// At rest on the invert near the node where chainage begins, moved around the wall by an arc a ~ N(0,
+/// lateral_sd): the angle is a/R. B: x along the pipe, z against gravity across the pipe, y = z x x to the
+/// left.
 BallStart MakeStart(const MotionContext& context, double lateral_sd_m) {
   const Pipe& pipe = LaunchPipe(context);
   BallStart start;
@@ -197,7 +198,7 @@ class BallInPipe : public Motion {
     if (const Joint* joint = context_.bore->FindJoint(spot.pipe, spot.s_m)) {
       if (downstream.LeadsIntoNarrower(*joint, context_.ball.radius_m / kMaxDiameterRatio))
         return MotionStatus::kTooLarge;
-      if (joint->dead_end()) return MotionStatus::kDeadEnd;
+      if (joint->dead_end() && !downstream.LeadsAway(*joint)) return MotionStatus::kDeadEnd;
       if (joint->arms.size() > 2) return MotionStatus::kStalledAtTee;
     }
     return downstream.LeadsOn(spot.pipe, context_.retrieve_node) ? MotionStatus::kBallStuck

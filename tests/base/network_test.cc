@@ -31,6 +31,18 @@ struct Plan {
   Network Build() const { return Network(nodes, pipes); }
 };
 
+TEST(Pipe, HasItsBoreBeyondItsEndsToo) {
+  // a closed end is a hemisphere: a ball in it lies beyond the pipe's end
+  Plan plan;
+  plan.nodes[2].position_m = {20, 0, 0};
+  plan.pipes[1].diameter_m = 0.1;  // gets a cone at B, on one line with the wider pipe
+  const Network network = plan.Build();
+  EXPECT_EQ(network.pipe(0).RadiusAt_m(-0.01), 0.075);
+  EXPECT_EQ(network.pipe(0).RadiusAt_m(10.01), 0.075);
+  EXPECT_EQ(network.pipe(1).RadiusAt_m(-0.01), 0.075);
+  EXPECT_EQ(network.pipe(1).RadiusAt_m(10.01), 0.05);
+}
+
 TEST(Network, FindsNodesAndPipesById) {
   const Network network = Plan().Build();
   EXPECT_EQ(network.FindNode("C"), 2);

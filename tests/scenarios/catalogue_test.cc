@@ -44,7 +44,7 @@ TEST(Catalogue, WalksHaveThePrintedLengths) {
       {"akkaya_walk_1", 23.45}, {"akkaya_walk_2", 45.77}, {"akkaya_walk_3", 50}};
   for (const auto& [name, length_m] : walks) {
     const auto assembly = Assemble(LoadScenario(name));
-    EXPECT_NEAR(assembly->route->length_m(), length_m, 1e-9) << name;
+    EXPECT_NEAR(assembly->plan->length_m(), length_m, 1e-9) << name;
   }
 }
 

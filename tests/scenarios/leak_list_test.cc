@@ -59,8 +59,9 @@ TEST(DrawLeaks, KeepTheirDistanceFromEachOtherFromListedOnesAndFromEnds) {
   }
 }
 
-// One leak a run: the long pipe is three times as long, so 3/4 of 2,000 leaks lie in it, +- 4 sqrt(n p q) = 78; the
-// logarithm of the hole is uniform, so that half the holes are below the geometric mean, +- 4 sqrt(n/4) = 90.
+// One leak a run: the long pipe is three times as long, so 3/4 of 2,000 leaks lie in it, +- 4 sqrt(n p q) =
+// 78; the logarithm of the hole is uniform, so that half the holes are below the geometric mean, +- 4
+// sqrt(n/4) = 90.
 TEST(DrawLeaks, AreUniformOverTheWayAndLogUniformInSize) {
   const Network line = MakeLine();
   Scenario scenario = Drawing(1);

@@ -2,13 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <filesystem>
 #include <ostream>
 #include <string>
 
 #include "base/check.h"
 #include "scenarios/output_file.h"
+#include "tests/scenarios/small_scenario.h"
 
 namespace piperun::scenarios {
 namespace {
@@ -66,30 +65,16 @@ TEST(DefaultRules, ALawWithoutEitherRoughnessFallsThrough) {
   EXPECT_EQ(MaterialRules().ChooseWall({"", 0.3, std::nullopt, 2e-3}).material, "cast_iron");
 }
 
-/// A rule file that lives as long as the test.
-class RuleFile {
- public:
-  explicit RuleFile(const std::string& rules) {
-    std::string name = "piperun_rules_";
-    name += testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::replace(name.begin(), name.end(), '/', '_');
-    path_ = std::filesystem::temp_directory_path() / (name + ".yaml");
-    WriteTextFile(path_, "name: mine\nrules:\n" + rules);
-  }
-  ~RuleFile() { std::filesystem::remove(path_); }
-  std::string path() const { return path_.string(); }
-
- private:
-  std::filesystem::path path_;
-};
+MaterialRules MakeRules(const std::string& rules) {
+  return MaterialRules("name: mine\nrules:\n" + rules, "mine.yaml");
+}
 
 TEST(RuleFiles, TheFirstRuleThatMatchesCountsAndWallsFollowTheBore) {
-  const RuleFile file(
+  const MaterialRules rules = MakeRules(
       "  - {min_diameter_mm: 100, max_diameter_mm: 200, material: steel, wall_mm: 5}\n"
       "  - {min_diameter_mm: 200, material: concrete, wall_classes: [{up_to_diameter_mm: 300, wall_mm: 30}, "
       "{up_to_diameter_mm: 500, wall_mm: 50}]}\n"
       "  - {material: copper, sdr: 22}\n");
-  const MaterialRules rules(file.path());
   EXPECT_EQ(rules.ChooseWall(Traits("", 200, 100)).material, "steel");
   EXPECT_EQ(rules.ChooseWall(Traits("", 200, 100)).thickness_m, 0.005);
   EXPECT_EQ(rules.ChooseWall(Traits("", 300, 100)).thickness_m, 0.03);
@@ -109,14 +94,11 @@ void PrintTo(const BadRules& bad, std::ostream* out) { *out << bad.name; }
 class RuleFileRefuses : public testing::TestWithParam<BadRules> {};
 
 TEST_P(RuleFileRefuses, WithTheLineAndTheProblem) {
-  std::string path;
   try {
-    const RuleFile file(GetParam().rules);
-    path = file.path();
-    const MaterialRules rules(path);
+    MakeRules(GetParam().rules);
     FAIL() << "accepted";
   } catch (const InputError& e) {
-    EXPECT_EQ(e.where(), path + ":" + std::to_string(GetParam().line));
+    EXPECT_EQ(e.where(), "mine.yaml:" + std::to_string(GetParam().line));
     EXPECT_NE(e.problem().find(GetParam().words), std::string::npos) << e.what();
   }
 }
@@ -138,7 +120,36 @@ const BadRules kBadRules[] = {
 INSTANTIATE_TEST_SUITE_P(BadInput, RuleFileRefuses, testing::ValuesIn(kBadRules),
                          [](const auto& info) { return std::string(info.param.name); });
 
-TEST(RuleFiles, AMissingFileIsNamed) { EXPECT_THROW(MaterialRules("no/such/rules.yaml"), InputError); }
+TEST(RuleFiles, AMissingFileIsNamedWithTheLineThatNamesIt) {
+  const char* text =
+      "schema: piperun.scenario/1\n"
+      "name: s\n"
+      "network:\n"
+      "  inp: neighbourhood\n"
+      "  material_rules: no/such/rules.yaml\n";
+  const TemporaryFolder folder;
+  const std::string path = (folder / "s.yaml").string();
+  WriteTextFile(path, text);
+  try {
+    LoadScenario(path);
+    FAIL() << "accepted";
+  } catch (const InputError& e) {
+    EXPECT_EQ(e.key_path(), "network.material_rules");
+    EXPECT_EQ(e.where(), path + ":5");
+    EXPECT_NE(e.problem().find((folder / "no/such/rules.yaml").string()), std::string::npos) << e.what();
+  }
+}
+
+TEST(RuleFiles, AreReadFromBesideTheScenario) {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "s.yaml").string();
+  const std::string rules = "name: mine\nrules: [{material: copper, wall_mm: 2}]\n";
+  WriteTextFile(folder / "mine.yaml", rules);
+  WriteTextFile(
+      path,
+      "schema: piperun.scenario/1\nname: s\nnetwork: {inp: neighbourhood, material_rules: mine.yaml}\n");
+  EXPECT_EQ(LoadScenario(path).network.material_rules_text, rules);
+}
 
 }  // namespace
 }  // namespace piperun::scenarios

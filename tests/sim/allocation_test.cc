@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstddef>
 
+#include "sim/bore.h"
 #include "sim/hydraulics.h"
 #include "sim/motion.h"
 #include "sim/network/simulation.h"
@@ -28,12 +29,16 @@ namespace {
 TEST(BallInPipe, StepsWithoutAllocating) {
   const testing::PipeLine line = testing::MakePipeLine({{0, 0, 0}, {2, 0, 0}, {2, 2, 0.3}});
   const WaterProperties water = CalcWater(15);
+  const Bore bore(line.network);
   const SteadyFlow flow = SolveSteadyFlow(line.network, line.route, {0.014, 5e5}, {}, water, 9.80665);
   MotionContext context;
   context.water = water;
   context.network = &line.network;
   context.route = &line.route;
+  context.bore = &bore;
   context.flow = &flow.timeline;
+  context.launch = {0, false};
+  context.retrieve_node = 1;
   for (const MotionKind& kind : MotionKinds()) {
     if (kind.name != "ball_in_pipe") continue;
     const long at_first = allocations;

@@ -297,5 +297,29 @@ TEST(FlowField, AcceleratesWithChangingFlow) {
   }
 }
 
+TEST(FlowField, AConeTowardsAPipeTooNarrowForTheBallHasFlowWhereItFits) {
+  // 150 to 80 mm over 140 mm: the bore's radius falls by a quarter of the way; a ball of 78 mm fits to a bore
+  // of 78/0.95 mm. It sees more than the mean speed, for it is in the middle, and no more than if all the
+  // water went through its disc.
+  std::vector<PipeSpec> pipes{testing::MakePipeSpec("P", "A", "M"),
+                              testing::MakePipeSpec("Q", "M", "B", {.diameter_m = 0.08})};
+  const Network network({{"A", {0, 0, 0}}, {"M", {2, 0, 0}}, {"B", {5, 0, 0}}}, pipes);
+  const double flow_m3_s = 0.3 * network.pipe(0).area_m2(), ball_m = 0.039;
+  const FlowState state{{{{0, 2, flow_m3_s, 50, 50, 0.02}}, {{0, 3, flow_m3_s, 50, 50, 0.02}}}};
+  const FlowTimeline timeline({network.pipe(0).area_m2(), network.pipe(1).area_m2()}, {TrueTime{}}, {state});
+  const Bore bore(network);
+  const FlowField field(bore, timeline, kWater, kGravity, ball_m);
+  double last = 0.3;
+  for (const double s_m : {0.02, 0.06, 0.1, 4 * (0.075 - ball_m / 0.95) - 1e-9}) {
+    const Vector3d p(2 + s_m, 0, 0);
+    const double radius_m = 0.075 - s_m / 4, mean = flow_m3_s / (M_PI * radius_m * radius_m);
+    const double speed = field.Eval(SpotIn(network, 1, p), p, {}).velocity_W.x();
+    EXPECT_GT(speed, last) << s_m;
+    EXPECT_GT(speed, mean) << s_m;
+    EXPECT_LT(speed, mean * std::pow(radius_m / ball_m, 2)) << s_m;
+    last = speed;
+  }
+}
+
 }  // namespace
 }  // namespace piperun::sim

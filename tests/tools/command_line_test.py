@@ -141,6 +141,21 @@ class CommandLine(unittest.TestCase):
         shown = self.scenario(piperun("scenario", "show", "quickstart").stdout, "shown.yaml")
         self.assertEqual(piperun("scenario", "validate", shown).returncode, 0)
 
+    def test_scenario_new_on_an_epanet_file(self):
+        new = self.folder / "mine.yaml"
+        start = ("scenario", "new", new, "--inp", TOWN)
+        for options, parts in [(("--from", "L0O", "--to", "L20"), ["--from", "did you mean 'L00'?"]),
+                               (("--from", "L00", "--to", "L2"), ["--to", "did you mean 'L20'?"]),
+                               (("--from", "L20", "--to", "L00"), ["--to", "no water leads from 'L20' to 'L00'"])]:
+            done = piperun(*start, *options)
+            self.assertEqual(done.returncode, 2)
+            for part in parts:
+                self.assertIn(part, done.stderr)
+        self.assertFalse(new.exists())
+        done = piperun(*start, "--from", "L00", "--to", "L20")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(piperun("scenario", "validate", new).returncode, 0)
+
     def test_check_says_what_failed(self):
         good = self.scenario(SCENARIO + "expect: [{path: /status, equals: ok}]\n")
         bad = self.scenario(SCENARIO + "expect: [{path: /route/length_m, max: 2}]\n", "bad.yaml")
@@ -181,7 +196,7 @@ class CommandLine(unittest.TestCase):
                             "expected a number")
 
     def test_values_out_of_range(self):
-        self.assert_refused(self.scenario(SCENARIO + "ball: {radius_mm: 80}\n"), "ball.radius_m", "0.08", "0.075")
+        self.assert_refused(self.scenario(SCENARIO + "ball: {radius_mm: 80}\n"), "ball.radius_m", "0.08", "0.07125")
         self.assert_refused(self.changed("inlet_L_s: 8.5", "inlet_L_s: -1"), "flow.inlet_L_s", "-1", "[0, 100]")
         self.assert_refused(self.changed("s_m: 1.5", "s_m: 3.5"), "tiny.yaml:11:", "leaks[0].s_m", "3.5", "[0, 3]")
         self.assert_refused(self.changed("rate_Hz: 400", "rate_Hz: 0"), "sensors.imu0.rate_Hz", "0")

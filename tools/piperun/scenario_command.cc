@@ -66,11 +66,22 @@ void CopyFromCatalogue(const NewOptions& options) {
   WriteNew(options.path, found->text);
 }
 
+/// The plan, with what is wrong about its nodes told by the options that name them.
+scenarios::InpScenarioPlan PlanFromOptions(const NewOptions& options) {
+  try {
+    return scenarios::PlanInpScenario(options.inp, options.from, options.to);
+  } catch (const InputError& e) {
+    if (e.key_path() == "mission.launch") throw InputError(e.problem(), "--from", e.where());
+    if (e.key_path() == "mission.retrieve") throw InputError(e.problem(), "--to", e.where());
+    throw;
+  }
+}
+
 /// A scenario on an EPANET file; it is written beside the user, called like the file.
 void StartFromInp(const NewOptions& options) {
   if (options.from.empty()) throw InputError("name the node where the ball goes in", "--from");
   if (options.to.empty()) throw InputError("name the node where it is taken out", "--to");
-  auto plan = scenarios::PlanInpScenario(options.inp, options.from, options.to);
+  auto plan = PlanFromOptions(options);
   const std::string path = options.path.empty() ? plan.name + ".yaml" : options.path;
   plan.inp_path =
       std::filesystem::proximate(options.inp, std::filesystem::absolute(path).parent_path()).string();
