@@ -131,7 +131,7 @@ TEST(DrawNetwork, ABallPassesWhatIsWideOpen) {
   for (const auto& [id, passable] : {std::pair{"climb", true},
                                      {"street", true},
                                      {"shut", false},
-                                     {"main", true},
+                                     {"main", false},
                                      {"lift", false},
                                      {"gate", true},
                                      {"brake", false}}) {
