@@ -78,6 +78,7 @@ void JointWall::AddFeet(const Vector3d& p_N, std::size_t own, double limit_m, do
 void JointWall::AddPlate(const BoreMember& tube, const Vector3d& p_N, WallFeet& feet) const {
   if (tube.plate_m == std::numeric_limits<double>::infinity()) return;
   const double along = (p_N - tube.origin).dot(tube.axis);
+  if (along > tube.plate_m) return;  // what is behind it comes from elsewhere
   if ((p_N - tube.origin - along * tube.axis).norm() > tube.radius_m) return;
   feet.Add({-tube.axis, tube.plate_m - along, WallFoot::Kind::kPlane});
 }

@@ -22,6 +22,7 @@ void RunScenario(benchmark::State& state, const char* name) {
 }
 
 BENCHMARK_CAPTURE(RunScenario, Quickstart, "quickstart")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(RunScenario, TwoBends, "two_bends")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(RunScenario, Closure, "closure")->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -14,11 +14,15 @@ void WorldStep(benchmark::State& state, const std::vector<Vector3d>& points) {
   const double flow_m3_s = 0.8 * line.network.pipe(0).area_m2();
   const WaterProperties water = CalcWater(15);
   const SteadyFlow flow = SolveSteadyFlow(line.network, line.route, {flow_m3_s, 1e7}, {}, water, 9.80665);
+  const Bore bore(line.network);
   MotionContext context;
   context.water = water;
   context.network = &line.network;
   context.route = &line.route;
+  context.bore = &bore;
   context.flow = &flow.timeline;
+  context.launch = {0, false};
+  context.retrieve_node = 1;
   for (const MotionKind& kind : MotionKinds()) {
     if (kind.name != "ball_in_pipe") continue;
     const auto motion = kind.make(*kind.make_params(), context);

@@ -203,6 +203,28 @@ TEST(BallInNetwork, StallsAtATeeWhoseWaterCannotLiftIt) {
   EXPECT_LT(motion->state().X_WB.p.norm(), kBore);
 }
 
+TEST(BallInNetwork, RollsAwayFromTwoPumpsSideBySide) {
+  // as EPANET draws them: both from the well W to H, one over the other; the pipe goes on in their line
+  const Vector3d well(-0.6, 0, 0);
+  const PipeShape sharp{.bend_radius_m = 0};
+  std::vector<PipeSpec> pipes{MakePipeSpec("P", "H", "B", sharp), MakePipeSpec("PUMP1", "W", "H", sharp),
+                              MakePipeSpec("PUMP2", "W", "H", sharp)};
+  pipes[1].passable = pipes[2].passable = false;
+  Water water(Network({{"H", {0, 0, 0}}, {"B", {4, 0, 0}}, {"W", well, true}}, pipes), {0.4, 0.4, 0});
+  water.context.retrieve_node = 1;
+  const auto motion = water.Launch();
+  double last_m = motion->state().chainage_m;
+  while (motion->status() == MotionStatus::kRunning) {
+    motion->Step();
+    EXPECT_GE(motion->state().chainage_m, last_m);
+    last_m = motion->state().chainage_m;
+    if (last_m < 3.9) {
+      EXPECT_NEAR(motion->state().f_WB_B.norm(), 9.80665, 1) << "at " << last_m;
+    }
+  }
+  EXPECT_EQ(motion->status(), MotionStatus::kArrived);
+}
+
 TEST(BallInNetwork, PositionGoesOnThroughAJointWhoseDrawingDoesNotClose) {
   // drawn 2 m long, but 2.5 m: the second pipe begins where the first one ends
   std::vector<PipeSpec> pipes{MakePipeSpec("P", "A", "M"), MakePipeSpec("Q", "M", "B")};
