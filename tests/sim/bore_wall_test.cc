@@ -368,7 +368,7 @@ TEST(BoreWall, APlateShutsAnImpassableBranchBehindItsMouth) {
   EXPECT_NEAR(Nearest(in_main).distance_m, plate_m - 0.05, 1e-14);
 }
 
-TEST(BoreWall, ShortPipesFeelBothTheirJoints) {
+TEST(BoreWall, ShortPipesFeelBothTheirJointsSlow) {
   // an off-set cross: branches to +y and -y from nodes 60 mm apart on a main along x
   const double apart = 0.06;
   std::vector<NodeSpec> nodes{{"A", {-3, 0, 0}}, {"M", {0, 0, 0}}, {"N", {apart, 0, 0}},

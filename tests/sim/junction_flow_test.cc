@@ -209,7 +209,7 @@ double TraceBranchShare(const Fitting& fitting, const std::vector<double>& outfl
   return static_cast<double>(branched) / seeds;
 }
 
-TEST(JunctionFlow, DividesParticlesLikeTheFlow) {
+TEST(JunctionFlow, DividesParticlesLikeTheFlowSlow) {
   const Fitting fitting(kTee);
   for (const double share : {0.25, 0.5, 0.75}) {
     EXPECT_NEAR(TraceBranchShare(fitting, {-kA, (1 - share) * kA, share * kA}), share, 0.02);
@@ -244,7 +244,7 @@ TEST(JunctionFlow, DoesNotCoverParallelArms) {
   EXPECT_TRUE(JunctionFlow::Covers(Bore(MakeStar(kTee)).joint(0)));
 }
 
-TEST(JunctionFlow, OfArbitraryJointsIsBounded) {
+TEST(JunctionFlow, OfArbitraryJointsIsBoundedSlow) {
   // two to five arms anywhere, bores 1 to 3: where a ball's centre can be the water is nowhere much faster
   // than in the fastest arm
   const RandomStream random(7, "joints", 0);
