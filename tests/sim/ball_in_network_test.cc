@@ -124,6 +124,20 @@ TEST(BallInNetwork, RollsDownAStillPipeToItsClosedEnd) {
   EXPECT_NEAR((motion->state().X_WB.p - Vector3d(kRun, 0, -kFall)).norm(), kOffset, 1e-9);
 }
 
+TEST(BallInNetwork, ABallThatNearlyFillsItsBoreStaysInItWhereTheWaterRaces) {
+  // drag takes the slip off in 2F/(M slip) = 1,700 a second: more than a step of a millisecond can follow
+  Water water(Network({{"A", {0, 0, 0}}, {"B", {3, 0, 0}}},
+                      {MakePipeSpec("P", "A", "B", {.diameter_m = 0.052, .bend_radius_m = 0})}),
+              {9.8});
+  for (const double radius_m : {0.022, 0.0246}) {
+    water.context.ball.radius_m = radius_m;
+    const auto motion = water.Run();
+    EXPECT_EQ(motion->status(), MotionStatus::kDeadEnd) << radius_m;
+    EXPECT_NEAR(motion->state().chainage_m, 3, 0.026) << radius_m;
+    EXPECT_LT(motion->state().v_WB_W.norm(), 0.1) << radius_m;
+  }
+}
+
 TEST(BallInNetwork, AnEndWhereWaterIsDrawnIsADeadEndToTheBall) {
   Water water(MakeTwoPipes(), {0.5, 0.5});
   const auto motion = water.Run();
