@@ -296,13 +296,11 @@ void Drawer::AddNotes(std::vector<std::string>& notes) const {
   const auto check_valves = std::count_if(model_.pipes.begin(), model_.pipes.end(),
                                           [](const sim::PipeLink& pipe) { return pipe.check_valve; });
   if (check_valves > 0) {
-    notes.push_back(std::to_string(check_valves) + " pipes have a check valve, whose flap lets no ball pass");
+    notes.push_back("check valves: the flaps of " + std::to_string(check_valves) + " let no ball pass");
   }
   if (model_.reservoir_count() > 0) {
-    notes.push_back(
-        std::to_string(model_.reservoir_count()) +
-        " reservoirs: their pipes are laid at the lowest neighbour's elevation, the file says only "
-        "the water level");
+    notes.push_back("reservoirs: pipes of " + std::to_string(model_.reservoir_count()) +
+                    " are laid at the lowest neighbour's elevation; the file tells the water level only");
   }
 }
 
