@@ -193,7 +193,7 @@ class InpPipeline {
       throw InputError(FormatNumber(launch_s) + " s is not allowed; hydraulics count whole seconds",
                        "flow.launch_time_s");
     }
-    sim::LeakyModel leaky = sim::InsertLeaks(model_, MakePipeLeaks(leaks));
+    sim::LeakyModel leaky = sim::InsertLeaks(model_, MakePipeLeaks(leaks), scenario_.gravity_m_s2);
     const auto steps = SolvePeriod(leaky.model, launch_s + scenario_.mission.time_limit_s);
     sim::FlowTimeline timeline = sim::MakeFlowTimeline(leaky, steps, launch, network_, water_);
     std::vector<LeakState> states =

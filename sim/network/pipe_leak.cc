@@ -68,8 +68,8 @@ PipeLink CutPiece(const PipeLink& pipe, double s_begin_m, double s_end_m) {
 /// Builds the new model: old junctions first, then the leaks', so that old junctions keep their numbers.
 class Cutter {
  public:
-  Cutter(const HydraulicModel& model, std::span<const PipeLeak> leaks)
-      : old_(model), leaks_(leaks), order_(SortLeaks(model, leaks)) {
+  Cutter(const HydraulicModel& model, std::span<const PipeLeak> leaks, double gravity_m_s2)
+      : old_(model), leaks_(leaks), gravity_m_s2_(gravity_m_s2), order_(SortLeaks(model, leaks)) {
     result_.model = model;
     result_.leaks.resize(leaks.size());
     result_.pipes.resize(model.pipes.size());
@@ -96,7 +96,7 @@ class Cutter {
       JunctionNode junction;
       junction.id = pipe.id + ":" + leak.id;
       junction.elevation_m = from + (to - from) * leak.s_m / pipe.length_m;
-      junction.leak = CalcLeakCoefficients(leak);
+      junction.leak = CalcLeakCoefficients(leak, gravity_m_s2_);
       result_.leaks[i].junction = result_.model.junction_count();
       result_.model.junctions.push_back(std::move(junction));
     }
@@ -160,6 +160,7 @@ class Cutter {
 
   const HydraulicModel& old_;
   std::span<const PipeLeak> leaks_;
+  double gravity_m_s2_;
   std::vector<std::vector<std::size_t>> order_;
   LeakyModel result_;
 };
@@ -171,9 +172,9 @@ LeakCoefficients CalcLeakCoefficients(const PipeLeak& leak, double gravity_m_s2)
   return {speed * leak.area_m2, speed * leak.head_area_slope_m};
 }
 
-LeakyModel InsertLeaks(const HydraulicModel& model, std::span<const PipeLeak> leaks) {
+LeakyModel InsertLeaks(const HydraulicModel& model, std::span<const PipeLeak> leaks, double gravity_m_s2) {
   for (std::size_t i = 0; i < leaks.size(); ++i) RequireLeak(model, leaks[i], i);
-  return Cutter(model, leaks).Cut();
+  return Cutter(model, leaks, gravity_m_s2).Cut();
 }
 
 }  // namespace piperun::sim

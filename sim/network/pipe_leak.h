@@ -44,6 +44,7 @@ struct LeakyModel {
 /// check valve and whatever opens or closes the pipe stay with its first piece, which keeps the pipe's id.
 /// New ids are made of the pipe's and the leak's ("P7:L1"). Throws InputError ("leaks[i]...") for a pipe that
 /// does not exist, a place not strictly inside the pipe, two leaks at one place, sizes <= 0.
-LeakyModel InsertLeaks(const HydraulicModel& model, std::span<const PipeLeak> leaks);
+LeakyModel InsertLeaks(const HydraulicModel& model, std::span<const PipeLeak> leaks,
+                       double gravity_m_s2 = 9.80665);
 
 }  // namespace piperun::sim

@@ -97,6 +97,15 @@ TEST(Pipeline, ALeakInAnEpanetFileFlowsAsTorricelliSays) {
   }
 }
 
+TEST(Pipeline, ALeakFlowsAsTheScenariosGravityLetsIt) {
+  const std::string leak = "leaks=[{id: L1, pipe: M1, s_m: 46.3, hole_diameter_mm: 2}]";
+  const Pipeline here = Build(MakeNeighbourhood({leak})),
+                 there = Build(MakeNeighbourhood({leak, "gravity_m_s2=1.62"}));
+  // Cd A sqrt(2 g h); the head notices less than 1e-3 of it
+  EXPECT_NEAR(there.leak_states[0].flow_m3_s / here.leak_states[0].flow_m3_s, std::sqrt(1.62 / 9.80665),
+              1e-3);
+}
+
 TEST(Pipeline, FlowsBalanceAtLeaksTeesAndTheFeed) {
   const Pipeline pipeline =
       Build(MakeNeighbourhood({"leaks=[{id: L1, pipe: M1, s_m: 46.3, hole_diameter_mm: 2}, "
