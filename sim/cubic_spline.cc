@@ -97,7 +97,7 @@ void CubicSpline::AppendStretch(std::vector<double> t, std::vector<Vector3d> c) 
   }
 }
 
-CurvePoint CubicSpline::Eval(double t_s) const {
+SplinePoint CubicSpline::Eval(double t_s) const {
   const auto after = std::upper_bound(knots_s_.begin(), knots_s_.end(), t_s);
   const std::size_t i =
       after == knots_s_.begin() ? 0 : static_cast<std::size_t>(after - knots_s_.begin()) - 1;

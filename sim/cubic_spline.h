@@ -7,7 +7,7 @@
 namespace piperun::sim {
 
 /// Value and time derivatives of a vector curve, in the unit of its points.
-struct CurvePoint {
+struct SplinePoint {
   Vector3d x;
   Vector3d dx;
   Vector3d ddx;
@@ -27,7 +27,7 @@ class CubicSpline {
   CubicSpline(const std::vector<double>& times_s, const std::vector<Vector3d>& points);
 
   /// At rest at the last point after the last time.
-  CurvePoint Eval(double t_s) const;
+  SplinePoint Eval(double t_s) const;
   /// Where pieces begin, and the end.
   const std::vector<double>& knots_s() const { return knots_s_; }
 

@@ -65,8 +65,8 @@ WaypointScript::WaypointScript(const std::vector<double>& times_s, const std::ve
 }
 
 ScriptPoint WaypointScript::Eval(double t_s) const {
-  const CurvePoint p = position_.Eval(t_s);
-  const CurvePoint a = angles_.Eval(t_s);
+  const SplinePoint p = position_.Eval(t_s);
+  const SplinePoint a = angles_.Eval(t_s);
   return {{p.x, CalcAttitude(a.x)}, p.dx, p.ddx, CalcBodyRate(a.x, a.dx)};
 }
 

@@ -34,7 +34,7 @@ TEST(CubicSpline, RestFromRestOverOneIntervalIsAsDerivedByHand) {
 TEST(CubicSpline, IsContinuousUpToTheSecondDerivative) {
   const CubicSpline spline(kTimes, kPoints);
   for (const double t : spline.knots_s()) {
-    const CurvePoint before = spline.Eval(std::nextafter(t, -1)), after = spline.Eval(t);
+    const SplinePoint before = spline.Eval(std::nextafter(t, -1)), after = spline.Eval(t);
     EXPECT_LT((after.x - before.x).norm(), 1e-13) << t;
     EXPECT_LT((after.dx - before.dx).norm(), 1e-13) << t;
     EXPECT_LT((after.ddx - before.ddx).norm(), 1e-12) << t;
@@ -46,7 +46,7 @@ TEST(CubicSpline, GivesTheDerivativesOfItsValue) {
   const double h = 1e-5;
   for (double i = 0; i < 97; ++i) {
     const double t = 0.1031 * i + 0.01;
-    const CurvePoint a = spline.Eval(t - h), b = spline.Eval(t + h), p = spline.Eval(t);
+    const SplinePoint a = spline.Eval(t - h), b = spline.Eval(t + h), p = spline.Eval(t);
     EXPECT_LT(((b.x - a.x) / (2 * h) - p.dx).norm(), 1e-8) << t;     // j h^2 / 6 and rounding 1e-15 / h
     EXPECT_LT(((b.dx - a.dx) / (2 * h) - p.ddx).norm(), 1e-3) << t;  // one-sided where a knot lies between
   }
@@ -55,7 +55,7 @@ TEST(CubicSpline, GivesTheDerivativesOfItsValue) {
 TEST(CubicSpline, StandsExactlyStillBetweenEqualPoints) {
   const CubicSpline spline(kTimes, kPoints);
   for (const double t : {3.0, 3.7, 4.999, 8.0, 8.25}) {
-    const CurvePoint p = spline.Eval(t);
+    const SplinePoint p = spline.Eval(t);
     EXPECT_EQ(p.dx, Vector3d(0, 0, 0)) << t;
     EXPECT_EQ(p.ddx, Vector3d(0, 0, 0)) << t;
     EXPECT_EQ(p.x, t < 6 ? kPoints[3] : kPoints[6]) << t;
