@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -60,6 +61,8 @@ class Motion {
   virtual Vector3d planned_start_W() const { return state().X_WB.p; }
   /// The way taken so far; null for motions that know no pipes.
   virtual const Way* way() const { return nullptr; }
+  /// What a user should know of how the motion was computed; empty when all went as it should.
+  virtual std::vector<std::string> notes() const { return {}; }
 };
 
 struct MotionKind {

@@ -123,6 +123,20 @@ class BallInPipe : public Motion {
   Vector3d planned_start_W() const override { return MakeStart(context_, 0).X_LB.p; }
   const Way* way() const override { return &way_; }
 
+  std::vector<std::string> notes() const override {
+    std::vector<std::string> notes;
+    if (held_back_ > 0) {
+      notes.push_back("drag was held back in " + std::to_string(held_back_) +
+                      " steps, too stiff for them (a ball that nearly fills its bore in fast water); raise "
+                      "motion.rate_Hz");
+    }
+    if (const auto rescues = world_.state().rescues; rescues > 0) {
+      notes.push_back("the ball had to be pushed back into the bores in " + std::to_string(rescues) +
+                      " steps; pipes there overlap in a way that joints do not");
+    }
+    return notes;
+  }
+
   void Step() override {
     world_.Step();
     if (world_.state().crossing) way_.Cross(*world_.state().crossing);
@@ -139,8 +153,10 @@ class BallInPipe : public Motion {
     const double slip_m_s = (water_.velocity_W - ball.v_WB_W).norm();
     const double inertia_kg = context_.ball.mass_kg() + coefficients_.added_mass_kg;
     if (slip_m_s > 0) {
-      load.drag_W_N *=
+      const double share =
           CalcResolvedShare(2 * load.drag_W_N.norm() * rate_.Period_s() / (inertia_kg * slip_m_s));
+      load.drag_W_N *= share;
+      if (share < 1) ++held_back_;
     }
     return {load.Force_W_N(), load.spin_torque_W_N_m};
   }
@@ -228,6 +244,7 @@ class BallInPipe : public Motion {
   FluidLoadCoefficients coefficients_;
   WaterAtBall water_;  // where and when the world evaluated the loads last: at its present state
   bool too_large_ = false;
+  std::int64_t held_back_ = 0;  // steps whose drag was more than they can follow
   BallWorld world_;
   TruthState state_;
   MotionStatus status_ = MotionStatus::kRunning;
