@@ -20,7 +20,6 @@ namespace piperun::scenarios {
 namespace {
 
 constexpr double kAccuracy = 1e-6;  // flows balance to this part of the whole, where the file asks for less
-constexpr double kMaxDiameterRatio = 0.95;
 
 struct Stops {
   int launch = 0;
@@ -92,7 +91,7 @@ std::vector<RouteLeg> PlanAlongWater(const Scenario& scenario, const Network& ne
                                      const sim::FlowTimeline& flow, const Stops& stops) {
   const sim::Bore bore(network);
   const sim::Downstream downstream(bore, flow, TrueTime{});
-  const double min_radius_m = scenario.ball.radius_m / kMaxDiameterRatio;
+  const double min_radius_m = scenario.ball.radius_m / sim::kMaxDiameterRatio;
   std::vector<int> targets = stops.via;
   if (stops.retrieve >= 0) targets.push_back(stops.retrieve);
   std::vector<RouteLeg> plan;

@@ -57,7 +57,7 @@ class BallWorld::Impl {
   /// Kicks the ball with the loads at the present instant and lets it drift one step; fills what the state
   /// learns from that.
   void StepAhead(const Vector3d& v_now_W, const Vector3d& w_now_W, double kick_s) {
-    const BallLoad load = load_({state_.time, state_.X_LB.p, v_now_W, w_now_W, state_.spot});
+    const BallLoad load = load_({state_.time, state_.X_LB.p, state_.X_LB.q, v_now_W, w_now_W, state_.spot});
     world_.Step(kick_s / ball_.mass_kg * load.force_W_N, kick_s / ball_.inertia_kg_m2 * load.torque_W_N_m,
                 dt_s_);
     state_.a_WB_W = (world_.v_L() - state_.v_step_W) / kick_s;

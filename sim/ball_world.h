@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -39,6 +41,7 @@ struct BallStart {
 struct BallInstant {
   TrueTime time{};
   Vector3d p_LB;
+  Quaterniond q_WB;
   Vector3d v_WB_W;
   Vector3d w_WB_W;
   NetworkSpot spot;
@@ -51,6 +54,30 @@ struct BallLoad {
 
 using BallLoadFunction = std::function<BallLoad(const BallInstant&)>;
 
+/// What one contact did to the ball in the step around an instant.
+struct StepContact {
+  Vector3d normal_W;                          ///< unit, from the wall to the ball
+  Vector3d impulse_W_N_s = Vector3d::Zero();  ///< of the wall on the ball, friction included
+  double closing_speed_m_s = 0;  ///< at which the ball would have run into the wall; 0: it was following it
+  int feature = -1;              ///< as in WallFoot
+};
+
+/// The contacts of one step.
+class StepContacts {
+ public:
+  static constexpr std::size_t kCapacity = 4;
+  void Add(const StepContact& contact) {
+    if (size_ < kCapacity) contacts_[size_++] = contact;
+  }
+  const StepContact* begin() const { return contacts_.data(); }
+  const StepContact* end() const { return contacts_.data() + size_; }
+  std::size_t size() const { return size_; }
+
+ private:
+  std::array<StepContact, kCapacity> contacts_{};
+  std::size_t size_ = 0;
+};
+
 /// The ball at step n, complete.
 struct BallState {
   TrueTime time{};
@@ -62,6 +89,7 @@ struct BallState {
   NetworkSpot spot;
   std::optional<SpotMove::Crossing> crossing;  ///< the step that ended at `time` led into another pipe
   double normal_force_N = 0;  ///< of the wall on the ball, mean over the step around `time`, all contacts
+  StepContacts contacts;      ///< those of that step
   std::int64_t rescues = 0;   ///< steps so far in which the centre had left the water; 0 in a sane network
 };
 

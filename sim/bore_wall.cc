@@ -183,7 +183,9 @@ WallFeet BoreWall::FindFeetAtJoint(const NetworkSpot& spot, const Vector3d& p_F,
   }
   AddPlate(spot, p, feet);
   end.joint->AddFeet(p_N, end.arm, limit_m, kContactRange_m, joint);
-  for (const WallFoot& foot : joint) feet.Add({R_LF.transpose() * foot.normal, foot.distance_m, foot.kind});
+  for (const WallFoot& foot : joint) {
+    feet.Add({R_LF.transpose() * foot.normal, foot.distance_m, foot.kind, foot.feature});
+  }
   return feet;
 }
 
@@ -244,7 +246,7 @@ WallContacts BoreWall::Probe(const NetworkSpot& spot, const Vector3d& p_F, const
     const double v_n = v_F.dot(foot.normal);
     const Vector3d step_F = (v_F - v_n * foot.normal) * dt_s;
     const double gap_m = PredictDistance(spot, p_F, foot, step_F) - radius_m;
-    if (gap_m + v_n * dt_s < kContactRange_m) contacts.Add({foot.normal, gap_m});
+    if (gap_m + v_n * dt_s < kContactRange_m) contacts.Add({foot.normal, gap_m, foot.feature});
   }
   return contacts;
 }

@@ -14,6 +14,7 @@ namespace piperun::sim {
 struct WallContact {
   Vector3d normal_F;  ///< unit, from the wall to the sphere
   double gap_m = 0;   ///< between the sphere and the wall where the sphere is about to be; negative: overlap
+  int feature = -1;   ///< as in WallFoot
 };
 
 /// The contacts of one step: the few with the smallest gaps.

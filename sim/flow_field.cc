@@ -96,12 +96,18 @@ FlowField::Site FlowField::MakeSite(const NetworkSpot& spot, const Vector3d& p_L
 
 WaterAtBall FlowField::Eval(const NetworkSpot& spot, const Vector3d& p_L, TrueTime t) const {
   const Site site = MakeSite(spot, p_L, t);
+  WaterAtBall water = EvalMean(site);
+  FillSurroundings(site, water);
+  return water;
+}
+
+WaterAtBall FlowField::EvalMean(const Site& site) const {
   for (const bool at_to : {false, true}) {
     const double core_m = site.zone(at_to).core_m;
     if (core_m > 0 && site.FromEnd_m(at_to) < core_m) return EvalJunction(site, at_to);
   }
   const Jet flow = CalcFlow(site), share = CalcProfileShare(site);
-  const bool cone = FindCone(site.pipe, spot.s_m) != nullptr;
+  const bool cone = FindCone(site.pipe, site.spot.s_m) != nullptr;
   const bool developed = !cone && share.value == 1 && flow.value == site.flow.flow_m3_s;
   return developed ? EvalDeveloped(site) : EvalShaped(site, flow, share);
 }
@@ -157,8 +163,7 @@ Jet FlowField::CalcProfileShare(const Site& site) const {
 const DiscMeanTable& FlowField::FindOrMakeTable(double radius_m) const {
   std::unique_ptr<DiscMeanTable>& table = tables_[radius_m];
   // a cone may lead to a bore too narrow for the ball, which then stops short of it
-  if (!table)
-    table = std::make_unique<DiscMeanTable>(std::min(DiscMeanTable::kMaxLambda, ball_radius_m_ / radius_m));
+  if (!table) table = std::make_unique<DiscMeanTable>(std::min(kMaxDiameterRatio, ball_radius_m_ / radius_m));
   return *table;
 }
 
@@ -197,6 +202,14 @@ WaterAtBall FlowField::EvalDeveloped(const Site& site) const {
   water.pressure_Pa = water_.density_kg_m3 * gravity_m_s2_ * (site.flow.head_m - site.z_m);
   AddFriction(site, 1, water);
   return water;
+}
+
+/// What does not depend on the kind of flow; near a joint, as if the pipe went on.
+void FlowField::FillSurroundings(const Site& site, WaterAtBall& water) const {
+  water.axis_W = site.spot.axis.tangent_W;
+  if (site.offset_m > kOnAxis_m) water.from_wall_W = -site.offset / site.offset_m;
+  water.wall_gap_m = std::max(0.0, water.bore_radius_m - ball_radius_m_ - site.offset_m);
+  water.friction_velocity_m_s = std::abs(water.bulk_speed_m_s) * std::sqrt(site.flow.friction_factor / 8);
 }
 
 void FlowField::AddFriction(const Site& site, double share, WaterAtBall& water) const {

@@ -22,6 +22,10 @@ struct WaterAtBall {
   double bulk_speed_m_s = 0;                         ///< Q/A, positive from `from` to `to` of the pipe
   double pressure_Pa = 0;                            ///< gauge, static, at the ball's centre
   double bore_radius_m = 0;                          ///< of the bore around the ball
+  double friction_velocity_m_s = 0;                  ///< u* = |U| sqrt(f/8)
+  Vector3d axis_W = Vector3d::UnitX();               ///< tangent of the pipe's axis, unit
+  Vector3d from_wall_W = Vector3d::Zero();  ///< unit, from the nearest wall to the ball; zero on the axis
+  double wall_gap_m = 0;                    ///< between the ball and that wall
 };
 
 /// The flow in a network around a ball of one size. Along pipes:
@@ -92,11 +96,13 @@ class FlowField {
   Jet CalcProfileShare(const Site& site) const;
   AxialFlow CalcAxialFlow(const Site& site, const Jet& flow, const Jet& share) const;
 
+  WaterAtBall EvalMean(const Site& site) const;
   WaterAtBall EvalDeveloped(const Site& site) const;
   WaterAtBall EvalShaped(const Site& site, const Jet& flow, const Jet& share) const;
   WaterAtBall EvalJunction(const Site& site, bool at_to) const;
   void SetOutflows(const Joint& joint, TrueTime t, Junction& junction) const;
   void FillJunctionScalars(const Site& site, bool at_to, double outflow_m3_s, WaterAtBall& water) const;
+  void FillSurroundings(const Site& site, WaterAtBall& water) const;
   void AddFriction(const Site& site, double share, WaterAtBall& water) const;
 
   Junction& FindOrMakeJunction(int node) const;

@@ -29,7 +29,7 @@ FluidLoadCoefficients CalcFluidLoadCoefficients(const BallParams& ball, const Wa
   FluidLoadCoefficients c;
   c.volume_m3 = ball.volume_m3();
   c.displaced_mass_kg = water.density_kg_m3 * c.volume_m3;
-  c.added_mass_kg = ball.added_mass_coefficient * c.displaced_mass_kg;
+  c.added_mass_kg = ball.added_mass_coefficient.value_or(0.62) * c.displaced_mass_kg;
   c.weight_W_N = (ball.mass_kg() - c.displaced_mass_kg) * gravity_W;
   c.diameter_m = 2 * r;
   c.viscosity_m2_s = water.kinematic_viscosity_m2_s;

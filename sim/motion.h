@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,21 @@ enum class MotionStatus {
   kTooLarge,      ///< came to a pipe it does not fit into
   kLeftNetwork,   ///< into a reservoir or tank, or through the wall
   kNotFinite,
+};
+
+/// A collision of the ball with the wall or something on it, from its beginning until the two no longer press
+/// on each other beyond what carries the ball.
+struct ContactEvent {
+  TrueTime begin{};
+  double duration_s = 0;
+  int pipe = -1;
+  double s_m = 0;                             ///< along the pipe
+  double chainage_m = 0;                      ///< along the way
+  Vector3d p_W = Vector3d::Zero();            ///< where ball and wall touched, at the beginning
+  Vector3d impulse_W_N_s = Vector3d::Zero();  ///< of the wall on the ball
+  double closing_speed_m_s = 0;
+  double peak_force_N = 0;
+  int feature = -1;  ///< index of the wall feature; -1: the wall
 };
 
 /// Everything a motion may need; it keeps references, the caller keeps the objects alive.
@@ -63,6 +79,8 @@ class Motion {
   virtual const Way* way() const { return nullptr; }
   /// What a user should know of how the motion was computed; empty when all went as it should.
   virtual std::vector<std::string> notes() const { return {}; }
+  /// Collisions that came to their end with the last Step().
+  virtual std::span<const ContactEvent> contact_events() const { return {}; }
 };
 
 struct MotionKind {

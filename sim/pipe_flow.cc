@@ -126,7 +126,7 @@ VelocityProfile CalcVelocityProfile(double reynolds, double friction_factor) {
 }
 
 DiscMeanTable::DiscMeanTable(double lambda) : lambda_(lambda), step_((1 - lambda) / (kOffsets - 1)) {
-  Demand(lambda > 0 && lambda <= kMaxLambda, "d/D lies in (0, 0.95]");
+  Demand(lambda > 0 && lambda <= kMaxDiameterRatio, "d/D lies in (0, 0.95]");
   for (int i = 0; i < kExponents; ++i) {
     const double q = 1 / kMaxExponent + i * (1 / kMinExponent - 1 / kMaxExponent) / (kExponents - 1);
     for (int j = 0; j < kOffsets; ++j) {

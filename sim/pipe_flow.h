@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 
+#include "sim/ball.h"
+
 namespace piperun::sim {
 
 /// Share of turbulence in the flow of a pipe at Re = U D / nu: 0 up to 2 300, 1 from 4 000, a cubic blend
@@ -42,7 +44,6 @@ struct DiscMean {
 /// farther out, where a joint or a closed end gives it more room than the pipe, it sees what it saw there.
 class DiscMeanTable {
  public:
-  static constexpr double kMaxLambda = 0.95;
   explicit DiscMeanTable(double lambda);
   DiscMean Eval(const VelocityProfile& profile, double offset_from_axis) const;
   /// Integral of velocity times offset from the axis to `offset`: the stream function of what the ball sees.

@@ -17,6 +17,7 @@ struct WallFoot {
   Vector3d normal;        ///< unit, from the wall into the water
   double distance_m = 0;  ///< negative: p lies behind the wall
   Kind kind = Kind::kSheet;
+  int feature = -1;  ///< index of the wall feature it belongs to; -1: the wall itself
 };
 
 /// The nearest few feet of one point, each once.

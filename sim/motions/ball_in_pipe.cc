@@ -4,81 +4,30 @@
 #include <cmath>
 
 #include "base/check.h"
-#include "base/number.h"
-#include "base/random.h"
 #include "sim/ball_world.h"
 #include "sim/downstream.h"
 #include "sim/fluid_load.h"
+#include "sim/force_params.h"
+#include "sim/launch.h"
 #include "sim/motion.h"
 
 namespace piperun::sim {
 namespace {
 
-constexpr double kMaxDiameterRatio = 0.95;  // as far as wall factor and profile table go
 constexpr double kProgress_m = 0.01;
 constexpr double kTouching_m = 1e-6;  // far above rounding, far below anything a ball would feel
 
 struct BallInPipeParams : ParamsOf<BallInPipeParams> {
   double rate_Hz = 1000;
+  ForceParams forces;
+  StreamParams stream;
 
   void Visit(ParamVisitor& v) override {
     v.Number({"rate_Hz", "Steps of the physics per second."}, Range::Between(100, 10000), rate_Hz);
+    v.Struct({"forces", "Which laws act on the ball."}, forces);
+    v.Struct({"stream", "The flow in a pipe beyond its bulk speed."}, stream);
   }
 };
-
-const Pipe& LaunchPipe(const MotionContext& context) { return context.network->pipe(context.launch.pipe); }
-
-bool Fits(const BallParams& ball, double bore_radius_m) {
-  return ball.radius_m <= kMaxDiameterRatio * bore_radius_m;
-}
-
-void RequireFit(const MotionContext& context) {
-  const double bore_radius_m = LaunchPipe(context).radius_m();
-  if (Fits(context.ball, bore_radius_m)) return;
-  throw InputError("the ball's radius is " + FormatNumber(context.ball.radius_m) + " m; in a bore of " +
-                       FormatNumber(2 * bore_radius_m) + " m it must lie in (0, " +
-                       FormatNumber(kMaxDiameterRatio * bore_radius_m) + "] m",
-                   "ball.radius_m");
-}
-
-/// Across the pipe, the way gravity pulls; in a vertical pipe any direction across.
-Vector3d FindDown(const Vector3d& gravity_W, const Vector3d& tangent_W) {
-  const Vector3d across = gravity_W - gravity_W.dot(tangent_W) * tangent_W;
-  if (across.norm() > 1e-9 * gravity_W.norm()) return across.normalized();
-  return tangent_W.unitOrthogonal();
-}
-
-/// How far into the launch pipe the ball is put: clear of whatever else opens at the node.
-double LaunchDistance_m(const MotionContext& context) {
-  const Joint& joint = context.bore->joint(context.network->NodeAt(context.launch));
-  if (joint.smooth || joint.dead_end()) return 0;
-  const double clear_m = context.bore->FindArm(joint, context.launch).reach_m + context.ball.radius_m;
-  return std::min(clear_m, 0.5 * LaunchPipe(context).length_m);
-}
-
-/// At rest on the invert near the node where chainage begins, moved around the wall by an arc a ~ N(0,
-/// lateral_sd): the angle is a/R. B: x along the pipe, z against gravity across the pipe, y = z x x to the
-/// left.
-BallStart MakeStart(const MotionContext& context, double lateral_sd_m) {
-  const Pipe& pipe = LaunchPipe(context);
-  BallStart start;
-  start.spot.pipe = context.launch.pipe;
-  const double from_node_m = LaunchDistance_m(context);
-  start.spot.s_m = context.launch.at_to ? pipe.length_m - from_node_m : from_node_m;
-  start.spot.piece = pipe.FindPiece(start.spot.s_m);
-  start.spot.axis = EvalCentreline(pipe.centreline[start.spot.piece], start.spot.s_m);
-  const double bore_radius_m = pipe.RadiusAt_m(start.spot.s_m);
-  const double sense = context.launch.at_to ? -1 : 1;
-  const Vector3d x = sense * start.spot.axis.tangent_W, z = -FindDown(context.gravity_W, x), y = z.cross(x);
-  const double draw = RandomStream(context.seed, "launch", context.run).Normals(0, 0)[0];
-  const double angle = lateral_sd_m * draw / bore_radius_m;
-  Matrix3d R_WB;
-  R_WB << x, y, z;
-  const Vector3d towards_wall = std::sin(angle) * y - std::cos(angle) * z;
-  start.X_LB = {start.spot.axis.p_W + (bore_radius_m - context.ball.radius_m) * towards_wall,
-                Quaterniond(R_WB).normalized()};
-  return start;
-}
 
 /// The share of the drag F that a step can resolve, from z = 2F dt/(M |slip|): how much of the slip it would
 /// take off, twice. The world's leapfrog with extrapolated velocities is stable for z < 1 (amplification
@@ -111,7 +60,7 @@ class BallInPipe : public Motion {
         field_(*context.bore, *context.flow, context.water, context.gravity_W.norm(), context.ball.radius_m),
         coefficients_(CalcFluidLoadCoefficients(context.ball, context.water, context.gravity_W)),
         world_(*context.bore, MakeTubeBall(context.ball, coefficients_), rate_,
-               MakeStart(context, context.lateral_sd_m),
+               MakeLaunch(context, context.lateral_sd_m),
                [this](const BallInstant& ball) { return EvalLoad(ball); }) {
     Publish();
     progress_m_ = state_.chainage_m;
@@ -120,7 +69,7 @@ class BallInPipe : public Motion {
   Rate rate() const override { return rate_; }
   const TruthState& state() const override { return state_; }
   MotionStatus status() const override { return status_; }
-  Vector3d planned_start_W() const override { return MakeStart(context_, 0).X_LB.p; }
+  Vector3d planned_start_W() const override { return MakeLaunch(context_, 0).X_LB.p; }
   const Way* way() const override { return &way_; }
 
   std::vector<std::string> notes() const override {
@@ -255,6 +204,7 @@ class BallInPipe : public Motion {
 std::unique_ptr<Motion> Make(const Params& params, const MotionContext& context) {
   if (!context.bore) throw InputError("a ball in a pipe needs a network with at least one pipe", "kind");
   Demand(context.flow != nullptr, "whoever builds a network solves its flow");
+  context.ball.Check();
   RequireFit(context);
   return std::make_unique<BallInPipe>(static_cast<const BallInPipeParams&>(params), context);
 }

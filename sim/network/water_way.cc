@@ -5,6 +5,8 @@
 #include <numbers>
 #include <queue>
 
+#include "sim/ball.h"
+
 namespace piperun::sim {
 namespace {
 
@@ -54,7 +56,7 @@ Obstacle FindObstacle(const HydraulicModel& model, const HydraulicState& state, 
                       double ball_diameter_m) {
   if (link >= model.first_pump() && link < model.first_valve()) return Obstacle::kPump;
   if (IsClosed(state.status[link])) return Obstacle::kClosed;
-  if (ball_diameter_m > kGreatestBallToBore * Bore_m(model, link)) return Obstacle::kTooNarrow;
+  if (ball_diameter_m > kMaxDiameterRatio * Bore_m(model, link)) return Obstacle::kTooNarrow;
   if (link < model.first_pump()) {
     return model.pipes[link].check_valve ? Obstacle::kCheckValve : Obstacle::kNone;
   }

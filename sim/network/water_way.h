@@ -8,8 +8,6 @@
 
 namespace piperun::sim {
 
-/// A ball fills at most this part of a bore; beyond it jams at joints and bends.
-inline constexpr double kGreatestBallToBore = 0.95;
 /// Water slower than this stands still for anybody who waits for it.
 inline constexpr double kLeastSpeed_m_s = 1e-3;
 
@@ -23,7 +21,7 @@ const char* ObstacleText(Obstacle obstacle);
 bool IsWideOpen(ValveKind kind, LinkStatus status, double setting, double minor_loss);
 
 /// What is in a ball's way in a link: nothing in an open pipe, or a valve wide open, of which it fills at
-/// most kGreatestBallToBore. The impeller of a pump, the flap of a check valve and the seat of a control
+/// most kMaxDiameterRatio. The impeller of a pump, the flap of a check valve and the seat of a control
 /// valve stop it whether water flows or not.
 Obstacle FindObstacle(const HydraulicModel& model, const HydraulicState& state, int link,
                       double ball_diameter_m);

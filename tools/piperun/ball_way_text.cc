@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "sim/ball.h"
 #include "tools/piperun/long_table.h"
 #include "tools/piperun/number_text.h"
 
@@ -80,7 +81,7 @@ std::string PassageText(const HydraulicModel& model, const sim::HydraulicState& 
   return fmt::format(
              "\nA ball of {:.4g} mm passes {} of {}, {:.2f} of {:.2f} km; it may fill {:.2f} of a bore\n",
              1000 * diameter_m, passable, Counted(model.pipes.size(), "pipe"), passable_m / 1000,
-             length_m / 1000, sim::kGreatestBallToBore) +
+             length_m / 1000, sim::kMaxDiameterRatio) +
          BoreTable(model, state, diameter_m) + PassageTable(model, state, diameter_m, whole);
 }
 
