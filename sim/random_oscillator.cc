@@ -30,11 +30,17 @@ Response CalcResponse(double omega_1_s, double gamma_1_s, double dt_s) {
   return {phi_s, decay - fast * phi_s};
 }
 
-/// 1 - keep_x^2 - trade^2 = 2 gamma omega^2 integral of phi^2: where rounding would eat that, by its series.
-double CalcVariance(const OscillatorStep& step, double omega_1_s, double gamma_1_s, double dt_s) {
-  if ((omega_1_s + gamma_1_s) * dt_s > 0.01) return 1 - step.keep_x * step.keep_x - step.trade * step.trade;
-  const double g = gamma_1_s * dt_s, w2 = omega_1_s * omega_1_s * dt_s * dt_s;
-  return 2 * g * w2 * (1.0 / 3 - g / 4 + (7 * g * g - 4 * w2) / 60);
+/// What rounding would eat in a short step.
+struct Cancelling {
+  double variance_x = 0;  ///< 2 gamma omega^2 integral of phi^2
+  double push_y_s = 0;    ///< -omega integral of phi
+};
+
+/// By the series of phi.
+Cancelling ExpandShortStep(double omega_1_s, double gamma_1_s, double dt_s) {
+  const double g = gamma_1_s * dt_s, w = omega_1_s * dt_s;
+  return {2 * g * w * w * (1.0 / 3 - g / 4 + (7 * g * g - 4 * w * w) / 60),
+          -w * dt_s * (0.5 - g / 6 + (g * g - w * w) / 24)};
 }
 
 }  // namespace
@@ -47,12 +53,16 @@ OscillatorStep CalcOscillatorStep(double omega_1_s, double gamma_1_s, double dt_
   step.keep_x = response.slope + gamma_1_s * phi_s;
   step.trade = omega_1_s * phi_s;
   step.keep_y = response.slope;
-  step.push_y_s = (step.keep_x - 1) / omega_1_s;
+  const bool is_short = (omega_1_s + gamma_1_s) * dt_s < 0.01;
+  const Cancelling closed{1 - step.keep_x * step.keep_x - step.trade * step.trade,
+                          (step.keep_x - 1) / omega_1_s};
+  const Cancelling fine = is_short ? ExpandShortStep(omega_1_s, gamma_1_s, dt_s) : closed;
+  step.push_y_s = fine.push_y_s;
   step.push_x_s = (step.trade - gamma_1_s * step.push_y_s) / omega_1_s;
   const double variance_y = 1 - step.trade * step.trade - step.keep_y * step.keep_y;
   step.noise_y = std::sqrt(variance_y);
   step.noise_xy = omega_1_s * gamma_1_s * phi_s * phi_s / step.noise_y;
-  step.noise_x = std::sqrt(CalcVariance(step, omega_1_s, gamma_1_s, dt_s) - step.noise_xy * step.noise_xy);
+  step.noise_x = std::sqrt(fine.variance_x - step.noise_xy * step.noise_xy);
   return step;
 }
 
