@@ -57,8 +57,13 @@ Swirl StreamFluctuations::swirl() const {
 TurbulentPlace StreamFluctuations::MakePlace(const NetworkSpot& spot, const Vector3d& p_L,
                                              const WaterAtBall& water) const {
   const double reynolds = 2 * water.bore_radius_m * std::abs(water.bulk_speed_m_s) / viscosity_m2_s_;
-  return {spot.axis.tangent_W, spot.axis.curvature_W,       p_L - spot.axis.p_W,
-          water.bore_radius_m, water.friction_velocity_m_s, CalcTurbulentFraction(reynolds)};
+  const TurbulentPlace& last = state_.local.place;
+  TurbulentPlace place{spot.axis.tangent_W, spot.axis.curvature_W, p_L - spot.axis.p_W, water.bore_radius_m,
+                       water.friction_velocity_m_s};
+  place.turbulent_fraction = CalcTurbulentFraction(reynolds);
+  const bool same_bore = last.radius_m == place.radius_m;
+  place.size_filter = same_bore ? last.size_filter : CalcSizeFilter(coefficients_, place.radius_m);
+  return place;
 }
 
 void StreamFluctuations::AddTo(const NetworkSpot& spot, const Vector3d& p_L, WaterAtBall& water) {

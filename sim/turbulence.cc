@@ -29,8 +29,9 @@ void SetTimeScales(const TurbulenceCoefficients& c, LocalTurbulence& local) {
   const double u = place.friction_velocity_m_s;
   const double dissipation = CalcDissipationProfile(local.x2) * u * u * u / place.radius_m;
   const double lagrangian_s = 2 * local.rms.mean_square() * u * u / (c.kolmogorov_constant * dissipation);
-  const double turnover_s = std::cbrt(c.diameter_m * c.diameter_m / dissipation);
-  const double whole_s = std::max(lagrangian_s, turnover_s);
+  const double turnover3_s3 = c.diameter_m * c.diameter_m / dissipation;
+  const bool large = turnover3_s3 > lagrangian_s * lagrangian_s * lagrangian_s;
+  const double whole_s = large ? std::cbrt(turnover3_s3) : lagrangian_s;
   const double second_s = c.time_scale_ratio * whole_s, first_s = whole_s - second_s;
   local.omega_1_s = 1 / std::sqrt(first_s * second_s);
   local.gamma_1_s = 1 / first_s + 1 / second_s;
@@ -64,8 +65,8 @@ LocalTurbulence CalcLocalTurbulence(const TurbulentPlace& place, const Turbulenc
   local.place = place;
   local.x2 = std::min(1.0, place.offset_W.squaredNorm() / (place.radius_m * place.radius_m));
   local.rms = CalcRmsProfile(local.x2);
-  local.scale_m_s = place.friction_velocity_m_s * std::sqrt(place.turbulent_fraction) * c.intensity *
-                    CalcSizeFilter(c, place.radius_m);
+  local.scale_m_s =
+      place.friction_velocity_m_s * std::sqrt(place.turbulent_fraction) * c.intensity * place.size_filter;
   if (place.friction_velocity_m_s == 0 || place.turbulent_fraction == 0) return local;
   local.drift_W_1_s = CalcDrift(local);
   SetTimeScales(c, local);

@@ -67,6 +67,7 @@ struct TurbulentPlace {
   double radius_m = 0;                   ///< R
   double friction_velocity_m_s = 0;      ///< u*
   double turbulent_fraction = 1;         ///< of the flow (CalcTurbulentFraction)
+  double size_filter = 1;                ///< share of the rms that is felt (CalcSizeFilter)
 };
 
 /// Turbulence at one place: u' = S xi, with xi of unit variance and
