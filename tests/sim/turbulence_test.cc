@@ -209,7 +209,7 @@ TEST(Turbulence, StatisticsAreThoseAskedForAtAnyRateSlow) {
   place.friction_velocity_m_s = 0.5;
   const double time_s = 2 * (0.64 + 0.49 + 0.49) / 3 * 0.25 / (5 * 1.35 * 0.125 / 0.075);
   const Vector3d rms(0.4, 0.35, 0.35);
-  constexpr std::int64_t kBlocks = 40000;
+  constexpr std::int64_t kBlocks = 16000;
   for (const double rate_Hz : {1000.0, 8000.0}) {
     const TurbulenceStatistics found =
         MeasureTurbulence(place, MakeCoefficients(0, 1), Rate(rate_Hz), time_s, kBlocks, 7);
@@ -220,8 +220,6 @@ TEST(Turbulence, StatisticsAreThoseAskedForAtAnyRateSlow) {
       EXPECT_NEAR(found.integral_time_s[i] / time_s, 1, of_time) << rate_Hz;
       EXPECT_NEAR(found.acceleration_m_s2[i] * time_s * 0.3 / rms[i], 1, of_rms) << rate_Hz;
     }
-    RecordProperty("statistics_" + std::to_string(static_cast<int>(rate_Hz)),
-                   std::to_string((found.integral_time_s / time_s).mean()));
   }
 }
 
@@ -240,13 +238,15 @@ constexpr double kChiSquare9AtOnePercent = 21.666;  // nine degrees of freedom, 
 
 TEST(Turbulence, KeepsTracersUniformSlow) {
   // radial diffusivity s_r^2 T_L = 0.06 R u*: the slowest mode falls by exp(-3.83^2 0.06) a time unit
-  EXPECT_LT(CalcChiSquare(TraceTracers(MakeCoefficients(0, 1), 4000, 10, 4, 2e-3, 3)),
+  EXPECT_LT(CalcChiSquare(TraceTracers(MakeCoefficients(0, 1), 12000, 10, 4, 5e-3, 3)),
             kChiSquare9AtOnePercent);
 }
 
 TEST(Turbulence, WithoutTheDriftTracersGatherSlow) {
-  EXPECT_GT(CalcChiSquare(TraceTracers(MakeCoefficients(0, 0), 4000, 10, 4, 2e-3, 3)),
-            3 * kChiSquare9AtOnePercent);
+  // towards a density of (0.7 + 0.41 x^2)^-0.524, the drift's potential: 12 % either way
+  const std::vector<std::int64_t> counts = TraceTracers(MakeCoefficients(0, 0), 12000, 10, 4, 5e-3, 3);
+  EXPECT_GT(CalcChiSquare(counts), kChiSquare9AtOnePercent) << "the test of uniformity can fail";
+  EXPECT_GT(counts.front() + counts[1], counts[8] + counts.back());
 }
 
 /// The reference ball rolling along: mean water, gap and friction as FlowField tells them.
