@@ -321,7 +321,6 @@ CrossSpeed FlowField::CalcCrossSpeed(const Site& site, const Jet& bulk) const {
           swirl * speed * strength.swirl, swirl * (change * strength.swirl + speed * slope.swirl)};
 }
 
-/// Du/Dt of the sum: (u1 + u2) . grad u2 + u2 . grad u1 + du2/dt on top of that of the main flow u1.
 void FlowField::AddCrossFlow(const Site& site, const Jet& flow, const Jet& share, const AxialFlow& main,
                              WaterAtBall& water) const {
   if (!cross_flow_ || flow.value == 0 || share.value == 0) return;
@@ -332,23 +331,12 @@ void FlowField::AddCrossFlow(const Site& site, const Jet& flow, const Jet& share
   const CentrelinePoint& axis = site.spot.axis;
   const CrossPlace place{axis.tangent_W, axis.curvature_W, site.offset,
                          radius.value,   radius.d1,        ball_radius_m_};
-  const CrossFlow cross = CalcCrossFlow(place, speed);
-  const Vector3d& u2 = cross.velocity_W;
-  const Vector3d out = site.offset_m > kOnAxis_m ? Vector3d(site.offset / site.offset_m) : Vector3d::Zero();
-  const double outward = u2.dot(out);
-  const double along = site.stretch * (main.d_axial_dr_1_s * outward +
-                                       main.axial_m_s * site.stretch * axis.curvature_W.dot(u2));
-  const Vector3d across =
-      main.radial_over_r_1_s * u2 + (main.d_radial_dr_1_s() - main.radial_over_r_1_s) * outward * out;
-  water.velocity_W += u2;
-  water.acceleration_W += cross.gradient_1_s * water.velocity_W + along * axis.tangent_W + across;
-  water.acceleration_W += site.flow.dflow_dt_m3_s2 / flow.value * u2;
-  if (site.swirl.s != 0) {
-    CrossSpeed rate;
-    rate.swirl_m_s = speed.swirl_m_s / site.swirl.s * site.swirl.ds_dt_1_s;
-    water.acceleration_W += CalcCrossFlow(place, rate).velocity_W;
-  }
-  water.spin_W += 0.5 * cross.Curl_1_s();
+  const double switching = site.swirl.s != 0 ? speed.swirl_m_s / site.swirl.s * site.swirl.ds_dt_1_s : 0;
+  const CrossAddition addition = CalcCrossAddition(place, speed, main, water.velocity_W,
+                                                   site.flow.dflow_dt_m3_s2 / flow.value, switching);
+  water.velocity_W += addition.velocity_W;
+  water.acceleration_W += addition.acceleration_W;
+  water.spin_W += addition.spin_W;
 }
 
 FlowField::Junction& FlowField::FindOrMakeJunction(int node) const {

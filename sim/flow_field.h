@@ -6,6 +6,7 @@
 
 #include "base/water.h"
 #include "sim/axial_flow.h"
+#include "sim/cross_flow.h"
 #include "sim/flow_timeline.h"
 #include "sim/force_params.h"
 #include "sim/junction_flow.h"

@@ -10,60 +10,7 @@ constexpr double kGrowthDiameters = 1;
 constexpr double kDecayDiameters = 5;
 constexpr double kSharpDiameters = 1.5;  // radius of a bend whose secondary flow is full
 
-/// The flow across the pipe at one place, ready to be differentiated along any direction.
-struct CrossField {
-  const CrossPlace& place;
-  const CrossSpeed& speed;
-  double stretch, p, g;
-  Vector3d round;  // d x t
-  Vector3d bracket;
-
-  CrossField(const CrossPlace& at, const CrossSpeed& with)
-      : place(at),
-        speed(with),
-        stretch(1 / (1 - at.offset_W.dot(at.curvature_W))),
-        p(1 - Reach2() / Radius2()),
-        g(at.offset_W.dot(at.axis_W.cross(with.cells_W_m_s))),
-        round(at.offset_W.cross(at.axis_W)),
-        bracket(p * with.cells_W_m_s - (2 / Radius2() * g + with.swirl_m_s / at.radius_m * p) * round) {}
-
-  double Radius2() const { return place.radius_m * place.radius_m; }
-  double Reach2() const { return place.ball_radius_m * place.ball_radius_m + place.offset_W.squaredNorm(); }
-  Vector3d CalcDerivative(const Vector3d& along) const;
-};
-
-/// (along . grad) u by the chain rule over s, t, d, w, c and R.
-Vector3d CrossField::CalcDerivative(const Vector3d& along) const {
-  const Vector3d &t = place.axis_W, &d = place.offset_W, &w = speed.cells_W_m_s;
-  const double ds = stretch * t.dot(along), radius = place.radius_m;
-  const Vector3d dt = ds * place.curvature_W, dd = along - ds * t, dw = ds * speed.cells_slope_W_1_s;
-  const double dradius = ds * place.radius_slope;
-  const Vector3d across = along - t.dot(along) * t;
-  const double dstretch = stretch * stretch * place.curvature_W.dot(across);
-  const double dp = (2 * Reach2() * dradius / radius - 2 * d.dot(dd)) / Radius2();
-  const double dg = dd.dot(t.cross(w)) + d.dot(dt.cross(w) + t.cross(dw));
-  const Vector3d dround = dd.cross(t) + d.cross(dt);
-  const double c_R = speed.swirl_m_s / radius;
-  const double dc_R = (ds * speed.swirl_slope_1_s - c_R * dradius) / radius;
-  const double turn = 2 / Radius2() * g + c_R * p;
-  const double dturn = 2 / Radius2() * (dg - 2 * g * dradius / radius) + dc_R * p + c_R * dp;
-  return dstretch * bracket + stretch * (dp * w + p * dw - dturn * round - turn * dround);
-}
-
 }  // namespace
-
-Vector3d CrossFlow::Curl_1_s() const {
-  const Matrix3d& g = gradient_1_s;
-  return {g(2, 1) - g(1, 2), g(0, 2) - g(2, 0), g(1, 0) - g(0, 1)};
-}
-
-CrossFlow CalcCrossFlow(const CrossPlace& place, const CrossSpeed& speed) {
-  const CrossField field(place, speed);
-  CrossFlow flow;
-  flow.velocity_W = field.stretch * field.bracket;
-  for (int j = 0; j < 3; ++j) flow.gradient_1_s.col(j) = field.CalcDerivative(Vector3d::Unit(j));
-  return flow;
-}
 
 SecondaryFlow::SecondaryFlow(const Bore& bore, double amplitude)
     : bore_(bore), amplitude_(amplitude), ways_(bore.network().pipes().size()) {}

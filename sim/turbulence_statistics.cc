@@ -21,6 +21,21 @@ double SolveIntegralTime(double displacement_over_rms2_s2, double ratio, double 
   return time_s;
 }
 
+struct Sums {
+  Vector3d velocity2 = Vector3d::Zero(), acceleration2 = Vector3d::Zero(), displacement2 = Vector3d::Zero();
+  Vector3d displacement = Vector3d::Zero();  // of the block so far
+
+  void Add(const Vector3d& before_W, const WaterFluctuation& water, double dt_s) {
+    velocity2 += water.velocity_W.cwiseAbs2();
+    acceleration2 += water.acceleration_W.cwiseAbs2();
+    displacement += 0.5 * dt_s * (before_W + water.velocity_W);
+  }
+  void EndBlock() {
+    displacement2 += displacement.cwiseAbs2();
+    displacement.setZero();
+  }
+};
+
 struct Tracer {
   Vector3d p = Vector3d::Zero();  // in the cross-section y, z
   TurbulenceState state;
@@ -62,31 +77,23 @@ TurbulenceStatistics MeasureTurbulence(const TurbulentPlace& place, const Turbul
   const double dt_s = rate.Period_s();
   const auto steps = static_cast<std::int64_t>(std::lround(5 * nominal_s / dt_s));
   TurbulenceState state = StartTurbulence(noise.SixNormals(0, 0));
-  Vector3d velocity2 = Vector3d::Zero(), acceleration2 = Vector3d::Zero(), displacement2 = Vector3d::Zero();
-  std::int64_t step = 0;
-  for (std::int64_t block = 0; block < blocks; ++block) {
-    Vector3d displacement = Vector3d::Zero();
-    for (std::int64_t i = 0; i < steps; ++i) {
-      const Vector3d before = local.Scale(state.xi_W);
-      state = StepTurbulence(state, local, c, true, noise.SixNormals(static_cast<std::uint64_t>(++step), 0),
-                             dt_s);
-      const WaterFluctuation water = CalcFluctuation(state, local, Vector3d::Zero());
-      velocity2 += water.velocity_W.cwiseAbs2();
-      acceleration2 += water.acceleration_W.cwiseAbs2();
-      displacement += 0.5 * dt_s * (before + water.velocity_W);
-    }
-    displacement2 += displacement.cwiseAbs2();
+  Sums sums;
+  for (std::int64_t step = 1; step <= blocks * steps; ++step) {
+    const Vector3d before = local.Scale(state.xi_W);
+    state =
+        StepTurbulence(state, local, c, true, noise.SixNormals(static_cast<std::uint64_t>(step), 0), dt_s);
+    sums.Add(before, CalcFluctuation(state, local, Vector3d::Zero()), dt_s);
+    if (step % steps == 0) sums.EndBlock();
   }
-  TurbulenceStatistics result;
-  const auto samples = static_cast<double>(step);
-  result.rms_m_s = (velocity2 / samples).cwiseSqrt();
-  result.acceleration_m_s2 = (acceleration2 / samples).cwiseSqrt();
-  const Vector3d over = (displacement2 / static_cast<double>(blocks)).cwiseQuotient(velocity2 / samples);
+  const auto samples = static_cast<double>(blocks * steps);
+  const Vector3d over =
+      (sums.displacement2 / static_cast<double>(blocks)).cwiseQuotient(sums.velocity2 / samples);
+  TurbulenceStatistics result{(sums.velocity2 / samples).cwiseSqrt(), Vector3d::Zero(),
+                              (sums.acceleration2 / samples).cwiseSqrt(), blocks};
   for (int i = 0; i < 3; ++i) {
     result.integral_time_s[i] =
         SolveIntegralTime(over[i], c.time_scale_ratio, static_cast<double>(steps) * dt_s);
   }
-  result.blocks = blocks;
   return result;
 }
 

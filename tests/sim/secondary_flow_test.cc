@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "sim/ball_world.h"
+#include "sim/cross_flow.h"
 #include "sim/flow_field.h"
 #include "sim/fluid_load.h"
 #include "tests/support/pipes.h"
