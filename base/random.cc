@@ -39,15 +39,31 @@ std::array<double, 4> RandomStream::Uniforms(std::uint64_t sample, std::uint64_t
   return u;
 }
 
+namespace {
+
+/// Box and Muller.
+void Transform(double u, double v, double* normals) {
+  const double radius = std::sqrt(-2 * std::log(u)), angle = 2 * std::numbers::pi * v;
+  normals[0] = radius * std::cos(angle);
+  normals[1] = radius * std::sin(angle);
+}
+
+/// The centres of 2^32 equal cells of (0, 1).
+double ToUniform(std::uint64_t bits) { return (static_cast<double>(bits & 0xffffffff) + 0.5) * 0x1p-32; }
+
+}  // namespace
+
+std::array<double, 6> RandomStream::SixNormals(std::uint64_t sample, std::uint64_t slot) const {
+  const auto bits = Bits(sample, slot);
+  std::array<double, 6> n{};
+  for (std::size_t i = 0; i < 3; ++i) Transform(ToUniform(bits[i] >> 32), ToUniform(bits[i]), &n[2 * i]);
+  return n;
+}
+
 std::array<double, 4> RandomStream::Normals(std::uint64_t sample, std::uint64_t slot) const {
   const auto u = Uniforms(sample, slot);
   std::array<double, 4> n{};
-  for (std::size_t i = 0; i < 4; i += 2) {
-    const double radius = std::sqrt(-2 * std::log(u[i]));
-    const double angle = 2 * std::numbers::pi * u[i + 1];
-    n[i] = radius * std::cos(angle);
-    n[i + 1] = radius * std::sin(angle);
-  }
+  for (std::size_t i = 0; i < 4; i += 2) Transform(u[i], u[i + 1], &n[i]);
   return n;
 }
 
