@@ -56,7 +56,7 @@ class FlowField {
   /// References are kept. Where flow passes the ball must fit: d/D <= 0.95 (aborts on a spot in a bore
   /// that is tighter).
   FlowField(const Bore& bore, const FlowTimeline& flow, const WaterProperties& water, double gravity_m_s2,
-            double ball_radius_m);
+            double ball_radius_m, ProfileLaw profile = ProfileLaw::kPowerLaw);
 
   /// Flow at `spot` for a ball centred at p_L, in the drawing of the spot's pipe. Bores and joints are worked
   /// out when they are met first (1 ms and 20 to 400 ms); nothing else allocates. Not for several threads.
@@ -115,6 +115,7 @@ class FlowField {
   WaterProperties water_;
   double gravity_m_s2_;
   double ball_radius_m_;
+  ProfileLaw profile_;
   std::vector<PipeZones> zones_;                                     // per pipe
   mutable std::map<double, std::unique_ptr<DiscMeanTable>> tables_;  // by bore radius
   mutable std::vector<PipeTables> pipe_tables_;                      // per pipe

@@ -39,6 +39,13 @@ double CalcResolvedShare(double z) {
   return (kFree + (kMost - kFree) * -std::expm1(-(z - kFree) / (kMost - kFree))) / z;
 }
 
+/// Of the bores the ball may come through; first the one it is put into.
+std::vector<double> BoreRadii_m(const MotionContext& context) {
+  std::vector<double> radii_m{context.network->pipe(context.launch.pipe).radius_m()};
+  for (const Pipe& pipe : context.network->pipes()) radii_m.push_back(pipe.radius_m());
+  return radii_m;
+}
+
 TubeBall MakeTubeBall(const BallParams& ball, const FluidLoadCoefficients& c) {
   const double r = ball.radius_m;
   std::optional<ContactCompliance> compliance;
@@ -57,9 +64,11 @@ class BallInPipe : public Motion {
       : context_(context),
         rate_(params.rate_Hz),
         way_(*context.network, context.launch),
-        field_(*context.bore, *context.flow, context.water, context.gravity_W.norm(), context.ball.radius_m),
-        coefficients_(CalcFluidLoadCoefficients(context.ball, context.water, context.gravity_W)),
-        world_(*context.bore, MakeTubeBall(context.ball, coefficients_), rate_,
+        field_(*context.bore, *context.flow, context.water, context.gravity_W.norm(), context.ball.radius_m,
+               FindProfileLaw(params.stream.profile)),
+        coefficients_(CalcFluidLoadCoefficients(context.ball, params.forces, context.water, context.gravity_W,
+                                                BoreRadii_m(context))),
+        world_(*context.bore, MakeTubeBall(ApplyForces(context.ball, params.forces), coefficients_), rate_,
                MakeLaunch(context, context.lateral_sd_m),
                [this](const BallInstant& ball) { return EvalLoad(ball); }) {
     Publish();

@@ -12,6 +12,7 @@
 #include "sim/hydraulics.h"
 #include "sim/motion.h"
 #include "sim/pipe_flow.h"
+#include "sim/wall_factor.h"
 #include "tests/support/pipes.h"
 #include "tests/support/set_params.h"
 
@@ -227,9 +228,9 @@ TEST(BallInPipe, SteadyRollBalancesForcesAndTorques) {
   const DiscMean mean = DiscMeanTable(0.4).Eval({1 / std::sqrt(f), 1}, 0.6);
   const double volume = 4.0 / 3 * std::numbers::pi * r * r * r, area = std::numbers::pi * r * r;
   const double slip = mean.velocity * speed - v, re = std::abs(slip) * 0.06 / nu,
-               wall = CalcWallFactor(0.4, re);
-  const double drag =
-      0.5 * rho * area * CalcDragCoefficient(re / wall) * slip * std::abs(slip) / (wall * wall);
+               wall = std::exp(SolveLogWallFactor(WallFactorLaw::kKehlenbeckDiFelice, 0.4, re));
+  const double drag = 0.5 * rho * area * CalcDragCoefficient(DragLaw::kBrownLawler, re / wall) * slip *
+                      std::abs(slip) / (wall * wall);
   const double fall = volume * f / 0.15 * 0.5 * rho * speed * speed;
   const double w_rel = v / r + 0.5 * mean.gradient * speed / 0.075;  // the gradient is negative
   const double re_w = 0.06 * 0.06 * w_rel / nu;

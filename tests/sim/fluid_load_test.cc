@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "sim/ball_world.h"
 #include "tests/support/pipes.h"
@@ -19,8 +20,12 @@ const WaterProperties kWater{20, 1000, 1e-6, 1482};
 constexpr double kGravity = 9.81;
 const BallParams kBall{.radius_m = 0.03, .density_kg_m3 = 1100, .added_mass_coefficient = 0.5};
 
-FluidLoadCoefficients Coefficients(const BallParams& ball = kBall) {
-  return CalcFluidLoadCoefficients(ball, kWater, {0, 0, -kGravity});
+/// Without what a wall adds: the laws below are those of a free ball, or of one on the axis.
+const ForceParams kFarFromWalls{.rolling_drag = false, .lift = false, .magnus = false};
+
+FluidLoadCoefficients Coefficients(const BallParams& ball = kBall,
+                                   const ForceParams& forces = kFarFromWalls) {
+  return CalcFluidLoadCoefficients(ball, forces, kWater, {0, 0, -kGravity}, std::vector<double>{0.075});
 }
 
 /// Water at rest in a bore.
