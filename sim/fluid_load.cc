@@ -23,13 +23,15 @@ double CalcLogWallFactor(const FluidLoadCoefficients& c, double diameter_ratio, 
 /// 1/2 rho A C_D |u| u = pi/8 rho nu d (C_D Re) u for the free sphere; in the tube u/f takes the place of u.
 Vector3d CalcDrag(const FluidLoadCoefficients& c, const Vector3d& u_rel, double nearness,
                   LoadNumbers& numbers) {
+  const double l = numbers.diameter_ratio;
   const Reynolds reynolds = u_rel.norm() * c.diameter_m / c.viscosity_m2_s;
-  const double log_f = CalcLogWallFactor(c, numbers.diameter_ratio, reynolds), speed_up = std::exp(-log_f);
+  const double log_f = CalcLogWallFactor(c, l, reynolds), speed_up = std::exp(-log_f);
   const Reynolds free_reynolds(reynolds.value * speed_up, reynolds.log - log_f);
   double drag_times_reynolds = c.drag.TimesReynolds(free_reynolds) * speed_up;
   if (c.rolling_drag) {
     drag_times_reynolds +=
-        nearness * CalcContactDragTimesReynolds(reynolds, c.drag.TimesReynolds(reynolds), c.spin_factor);
+        (nearness - l * l * l) *
+        CalcContactDragTimesReynolds(reynolds, c.drag.TimesReynolds(reynolds), c.spin_factor);
   }
   numbers.reynolds = reynolds.value;
   numbers.free_reynolds = free_reynolds.value;
@@ -39,7 +41,9 @@ Vector3d CalcDrag(const FluidLoadCoefficients& c, const Vector3d& u_rel, double 
 Vector3d CalcLift(const FluidLoadCoefficients& c, const Vector3d& u_rel, double nearness,
                   const WaterAtBall& water) {
   const double along = u_rel.dot(water.axis_W);
-  return c.lift_scale_kg_m * nearness * along * along * water.from_wall_W;
+  const double across_m = 2 * (water.bore_radius_m - c.radius_m) - water.wall_gap_m;
+  const double share = nearness - CalcWallNearness(across_m, c.radius_m);
+  return c.lift_scale_kg_m * share * along * along * water.from_wall_W;
 }
 
 /// With S |v|^2 = r |w| |v| the square root is finite at rest.

@@ -73,16 +73,17 @@ struct FluidLoad {
 ///   weight and buoyancy  (m - rho V) g
 ///   fluid acceleration   (rho V + m_a) Du/Dt       pressure gradient of the turning flow, and added mass
 ///   pressure fall        V f_D/D rho U^2/2         of pipe friction, once, along the flow
-///   drag                 1/2 rho A (C_D(Re/f) / f^2 + n dC_D(Re)) |u-v| (u-v),   Re = |u-v| d/nu
-///   lift                 n 1/2 rho A C_L (u-v)_t^2 from the wall,   (u-v)_t along the pipe's axis
+///   drag                 1/2 rho A (C_D(Re/f) / f^2 + (n - l^3) dC_D(Re)) |u-v| (u-v),   Re = |u-v| d/nu
+///   lift                 1/2 rho A C_L (n - n') (u-v)_t^2 from the wall,   (u-v)_t along the pipe's axis
 ///   Magnus               1/2 rho A C_M r w_rel x v_rel / sqrt(1 + (C_M S / 0.5)^2),   S = r |w_rel|/|v_rel|
 ///   spin torque          k_spin 1/2 rho r^5 C_w |w_rel| (-w_rel),   w_rel = w - 1/2 curl u,  v_rel = v - u
 ///
-/// f: wall factor of a tube of d/D (WaterAtBall::bore_radius_m > 0) at this Re. dC_D: what touching a wall
-/// adds; n: nearness of the wall (sim/rolling_drag.h). Both effects add up: blockage is felt through the
-/// whole bore, the contact's drag in the wedge between ball and wall, where the bore's far side plays no
-/// part. Exact far from the wall and in a wide bore; in between the larger of both and their product are
-/// bounds (docs/physics.md).
+/// f: wall factor of a tube of l = d/D (WaterAtBall::bore_radius_m > 0) at this Re. dC_D: what touching a
+/// plane adds; n: nearness of the wall, n' of the wall across (sim/rolling_drag.h). f is measured on the
+/// axis, where the wall's nearness is l^3 already: off the axis there is n - l^3 more of it, nothing on the
+/// axis, all of dC_D on a plane. Blockage and contact add up: one is felt through the whole bore, the other
+/// in the wedge between ball and wall, where the bore's far side plays no part. Other ways: docs/physics.md.
+/// The lifts off opposite walls cancel on the axis.
 ///
 /// The Magnus force saturates at a coefficient of 0.5, which no measurement on spheres exceeds (Tsuji,
 /// Morikawa & Mizuno, J. Fluids Eng. 107, 484 (1985), from memory): a ball that rolls along with the water
