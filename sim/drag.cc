@@ -136,12 +136,9 @@ double CalcDragCoefficient(DragLaw law, const Reynolds& reynolds) {
 }
 
 double SphereDrag::TimesReynolds(const Reynolds& reynolds) const {
-  if (reynolds.value <= held_from_reynolds) return CalcDragTimesReynolds(law, reynolds);
-  return CalcDragCoefficient(law, held_from_reynolds) * reynolds.value;
-}
-
-SphereDrag MakeSphereDrag(DragLaw law, bool crisis) {
-  return {law, crisis ? INFINITY : FindDragLaw(law).crisis_reynolds};
+  const double held_from = crisis ? INFINITY : FindDragLaw(law).crisis_reynolds;
+  if (reynolds.value <= held_from) return CalcDragTimesReynolds(law, reynolds);
+  return CalcDragCoefficient(law, held_from) * reynolds.value;
 }
 
 double CalcSpinTorqueTimesReynolds(double spin_reynolds) {

@@ -76,12 +76,10 @@ double CalcDragCoefficient(DragLaw law, const Reynolds& reynolds);
 /// them C_D is held, from where the law begins to fall, at its value there: a modelling choice.
 struct SphereDrag {
   DragLaw law = DragLaw::kBrownLawler;
-  double held_from_reynolds = INFINITY;
+  bool crisis = true;  ///< the surface is smooth
 
   double TimesReynolds(const Reynolds& reynolds) const;
 };
-
-SphereDrag MakeSphereDrag(DragLaw law, bool crisis);
 
 /// Torque coefficient of a spinning sphere times its spin Reynolds number, C_w Re_w, finite at rest:
 ///

@@ -104,7 +104,7 @@ FluidLoadCoefficients CalcFluidLoadCoefficients(const BallParams& ball, const Fo
   c.radius_m = ball.radius_m;
   c.diameter_m = 2 * ball.radius_m;
   c.viscosity_m2_s = water.kinematic_viscosity_m2_s;
-  c.drag = MakeSphereDrag(FindDragLaw(forces.drag).law, !ball.suppresses_drag_crisis());
+  c.drag = {FindDragLaw(forces.drag).law, !ball.suppresses_drag_crisis()};
   c.rolling_drag = forces.rolling_drag;
   c.wall_factor = FindWallFactorLaw(forces.wall_factor).law;
   c.wall_factors = MakeWallFactors(c.wall_factor, ball.radius_m, bore_radii_m);

@@ -9,6 +9,7 @@
 #include "sim/fluid_load.h"
 #include "sim/force_params.h"
 #include "sim/launch.h"
+#include "sim/load_ranges.h"
 #include "sim/motion.h"
 
 namespace piperun::sim {
@@ -68,6 +69,7 @@ class BallInPipe : public Motion {
                FindProfileLaw(params.stream.profile)),
         coefficients_(CalcFluidLoadCoefficients(context.ball, params.forces, context.water, context.gravity_W,
                                                 BoreRadii_m(context))),
+        ranges_(coefficients_, context.water, FindProfileLaw(params.stream.profile)),
         world_(*context.bore, MakeTubeBall(ApplyForces(context.ball, params.forces), coefficients_), rate_,
                MakeLaunch(context, context.lateral_sd_m),
                [this](const BallInstant& ball) { return EvalLoad(ball); }) {
@@ -82,7 +84,7 @@ class BallInPipe : public Motion {
   const Way* way() const override { return &way_; }
 
   std::vector<std::string> notes() const override {
-    std::vector<std::string> notes;
+    std::vector<std::string> notes = ranges_.Sentences();
     if (held_back_ > 0) {
       notes.push_back("drag was held back in " + std::to_string(held_back_) +
                       " steps, too stiff for them (a ball that nearly fills its bore in fast water); raise "
@@ -108,6 +110,7 @@ class BallInPipe : public Motion {
     if (too_large_) return {};  // beyond what drag is known for; the run is over
     water_ = field_.Eval(ball.spot, ball.p_LB, ball.time);
     FluidLoad load = CalcFluidLoad(coefficients_, ball.v_WB_W, ball.w_WB_W, water_);
+    ranges_.Feed(load.numbers, water_);
     const double slip_m_s = (water_.velocity_W - ball.v_WB_W).norm();
     const double inertia_kg = context_.ball.mass_kg() + coefficients_.added_mass_kg;
     if (slip_m_s > 0) {
@@ -200,6 +203,7 @@ class BallInPipe : public Motion {
   Way way_;
   FlowField field_;
   FluidLoadCoefficients coefficients_;
+  LoadRanges ranges_;
   WaterAtBall water_;  // where and when the world evaluated the loads last: at its present state
   bool too_large_ = false;
   std::int64_t held_back_ = 0;  // steps whose drag was more than they can follow

@@ -100,7 +100,7 @@ TEST_P(EveryDragLaw, ForceGrowsWithSpeedBelowTheCrisis) {
 }
 
 TEST_P(EveryDragLaw, HasNoCrisisOnARoughBall) {
-  const SphereDrag rough = MakeSphereDrag(GetParam(), false), smooth = MakeSphereDrag(GetParam(), true);
+  const SphereDrag rough{GetParam(), false}, smooth{GetParam(), true};
   for (double re = 1e4; re < 1e6; re *= 1.02) {
     EXPECT_GT(rough.TimesReynolds(re) / re, 0.38) << re;
     EXPECT_LT(rough.TimesReynolds(re) / re, 0.52) << re;
