@@ -98,6 +98,12 @@ void BallParams::Visit(ParamVisitor& v) {
   v.Number(
       {"spin_drag_factor", "k_spin: share of a free sphere's spin torque that acts on a ball at the wall."},
       Range::Between(0, 2), spin_drag_factor);
+  v.Number(
+      {"lift_coefficient",
+       "C_L of the lift away from a wall the ball touches, with the slip's part along the pipe; 0.1-0.3."},
+      Range::Between(0, 1), lift_coefficient);
+  v.Number({"magnus_coefficient", "C_M of the Magnus force per spin parameter w r / |u - v|; 0.1-0.4."},
+           Range::Between(0, 2), magnus_coefficient);
   v.Number({"clock_offset_s", "What the robot's clock shows at the instant of release."},
            Range::Between(-1e6, 1e6), clock_offset_s);
   v.Number({"clock_drift_ppm", "How much faster than true time the robot's clock runs."},

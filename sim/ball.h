@@ -42,6 +42,8 @@ struct BallParams {
 
   double mass_kg() const;
   double volume_m3() const;
+  /// Rough from 1e-3 of the diameter, or covered with foam (Achenbach, J. Fluid Mech. 65, 113 (1974)).
+  bool suppresses_drag_crisis() const { return roughness_m >= 2e-3 * radius_m || foam_thickness_m > 0; }
   /// About the centre of mass, in B.
   Matrix3d Inertia_B_kg_m2() const;
   /// What the ranges in Visit cannot say; throws InputError: a tensor that is not symmetric, positive

@@ -1,33 +1,85 @@
 #pragma once
 
+#include <cmath>
+#include <string_view>
+
 namespace piperun::sim {
 
-/// Drag coefficient of a free sphere times its Reynolds number, C_D Re, which is finite at rest:
+/// A Reynolds number with its natural logarithm: most laws need it, and it costs as much as they do.
+struct Reynolds {
+  double value = 0;
+  double log = 0;  ///< -infinity at rest
+
+  Reynolds(double number) : value(number), log(std::log(number)) {}  // NOLINT: a number is what it is
+  Reynolds(double number, double logarithm) : value(number), log(logarithm) {}
+};
+
+/// Drag coefficients C_D of a free smooth sphere, Re = |u_rel| d / nu, log to base 10:
 ///
-///   C_D = 24/Re (1 + 0.150 Re^0.681) + 0.407 / (1 + 8710/Re),   Re = |u_rel| d / nu
+///   brown_lawler       24/Re (1 + 0.150 Re^0.681) + 0.407 / (1 + 8710/Re)               Re < 2e5
+///   clift_gauvin       24/Re (1 + 0.152 Re^0.677) + 0.417 / (1 + 5070 Re^-0.94)         Re < 2e5
+///   clift_gauvin_1970  24/Re (1 + 0.15 Re^0.687) + 0.42 / (1 + 42500 Re^-1.16)          Re < 3e5
+///   clift_grace_weber  ten segments, below                                              Re < 1e6
+///   morrison           24/Re + 2.6 (Re/5) / (1 + (Re/5)^1.52)
+///                      + 0.411 X^-7.94 / (1 + X^-8) + Re^0.8/461000, X = Re/263000      Re < 1e6
+///   barati_high        8e-6 ((Re/6530)^2 + tanh Re - 8 log Re)
+///                      - 0.4119 exp(-2.08e43 / (Re + Re^2)^4)
+///                      - 2.1344 exp(-(log(Re^2 + 10.7563)^2 + 9.9867) / Re)
+///                      + 0.1357 exp(-((Re/1620)^2 + 10370) / Re)
+///                      - 8.5e-3 (2 log tanh tanh Re - 2825.7162) / Re + 2.4795          Re < 1e6
 ///
-/// Brown & Lawler, J. Environ. Eng. 129, 222 (2003), fitted for Re < 2e5; the constants are from memory and
-/// agree with the Clift-Gauvin refit within 0.6 % for 10 < Re < 2e5. Above, the formula stays near 0.41-0.46
-/// and goes without the drag crisis, which a foam or rough cover suppresses (Achenbach, J. Fluid Mech. 65,
-/// 113 (1974)). Any Re >= 0 is accepted; C_D Re -> 24 at rest (Stokes).
-double CalcDragTimesReynolds(double reynolds);
+/// Sources: Brown & Lawler, J. Environ. Eng. 129, 222 (2003), from memory; Clift & Gauvin, Proc. Chemeca 70,
+/// 14 (1970), the refit as printed by Barati et al., the original from memory; Clift, Grace & Weber, Bubbles,
+/// Drops, and Particles (1978), table 5.2; Morrison, An Introduction to Fluid Mechanics (2013); Barati,
+/// Salehi Neyshabouri & Ahmadi, Powder Technol. 257, 11 (2014).
+///
+/// Clift, Grace & Weber, with L = log Re:
+///
+///   Re <    0.01    24/Re + 3/16
+///   Re <   20       24/Re (1 + 0.1315 Re^(0.82 - 0.05 L))
+///   Re <  260       24/Re (1 + 0.1935 Re^0.6305)
+///   Re < 1500       log C_D =  1.6435 - 1.1242 L + 0.1558 L^2
+///   Re <    1.2e4   log C_D = -2.4571 + 2.5558 L - 0.9295 L^2 + 0.1049 L^3
+///   Re <    4.4e4   log C_D = -1.9181 + 0.6370 L - 0.0636 L^2
+///   Re <    3.38e5  log C_D = -4.3390 + 1.5809 L - 0.1546 L^2
+///   Re <    4e5     29.78 - 5.3 L
+///   Re <    1e6     0.10 L - 0.49       reprints have 0.19 L, which would jump by 0.5 at 4e5
+///   above           0.19 - 8e4/Re       from memory; meets its neighbour at 1e6
+///
+/// Neighbouring segments do not meet (by 22 % at 4e5, by up to 1.2 % elsewhere): below each limit a segment
+/// goes over into the next by a cubic step, over the last 5 % of Re. Below Re = 0.01 Barati's formula, which
+/// grows without bounds at rest, is a straight line C_D Re to Stokes' 24.
+enum class DragLaw { kBrownLawler, kCliftGauvin, kCliftGauvin1970, kCliftGraceWeber, kMorrison, kBaratiHigh };
+
+/// How a law is called and how far it goes.
+struct DragLawInfo {
+  DragLaw law;
+  std::string_view key;    ///< in scenarios
+  std::string_view name;   ///< of its authors
+  double max_reynolds;     ///< up to which it was fitted
+  double crisis_reynolds;  ///< where C_D begins to fall into the drag crisis; infinite: it has none
+};
+
+const DragLawInfo& FindDragLaw(DragLaw law);
+/// By its key; aborts on a key that ForceParams does not offer.
+const DragLawInfo& FindDragLaw(std::string_view key);
+
+/// C_D Re, which is finite at rest: 24 (Stokes). Range: any Re >= 0; beyond the law's own it is what the
+/// formula gives.
+double CalcDragTimesReynolds(DragLaw law, const Reynolds& reynolds);
 
 /// C_D itself. Range: Re > 0.
-double CalcDragCoefficient(double reynolds);
+double CalcDragCoefficient(DragLaw law, const Reynolds& reynolds);
 
-/// Wall factor f = V_t(tube) / V_t(free): how much slower a sphere settles on the axis of a tube,
-///
-///   f = (1 - l^p) / (1 + (l/l0)^p),   l = d/D,   (l0 - 0.283)/(1.2 - l0) = 0.041 Re^0.524,
-///   p = 1.44 + 0.5466 Re^0.434 (Re <= 35),   2.3 + 37.3 Re^-0.8686 (Re > 35).
-///
-/// Kehlenbeck & Di Felice, Chem. Eng. Technol. 22, 303 (1999), from memory. Checked: Re -> infinity equals
-/// Newton's wall factor within 1.5 %, Re -> 0 at l = 0.1 gives 0.788 against Haberman & Sayre's 0.792. Re is
-/// taken as the sphere's own d |u_rel| / nu; with the free sphere's Re instead, f changes only for 0.1 < Re <
-/// 1e3. Range: 0 < l < 1 (data up to 0.9), Re >= 0.
-///
-/// The definition of f makes the drag in the tube the free sphere's drag at the speed u_rel / f, for every
-/// Re: a factor 1/f in Stokes flow, 1/f^2 at high Re.
-double CalcWallFactor(double diameter_ratio, double reynolds);
+/// A law for a surface: rough spheres (roughness from 1e-3 of the diameter) and foam-covered ones pass into
+/// their crisis early and come out of it with a C_D near 0.4 (Achenbach, J. Fluid Mech. 65, 113 (1974)). For
+/// them C_D is held, from where the law begins to fall, at its value there: a modelling choice.
+struct SphereDrag {
+  DragLaw law = DragLaw::kBrownLawler;
+  bool crisis = true;  ///< the surface is smooth
+
+  double TimesReynolds(const Reynolds& reynolds) const;
+};
 
 /// Torque coefficient of a spinning sphere times its spin Reynolds number, C_w Re_w, finite at rest:
 ///

@@ -57,6 +57,7 @@ FlowField::FlowField(const Bore& bore, const FlowTimeline& flow, const WaterProp
       ball_radius_m_(ball_radius_m),
       cross_flow_(stream.secondary_flow || stream.swirl_switching),
       secondary_(bore, stream.secondary_flow ? stream.secondary_flow_amplitude : 0),
+      profile_(FindProfileLaw(stream.profile)),
       pipe_tables_(bore.network().pipes().size()),
       junctions_(bore.network().nodes().size()) {
   for (std::size_t p = 0; p < pipe_tables_.size(); ++p) zones_.push_back(MakeZones(static_cast<int>(p)));
@@ -187,9 +188,9 @@ WaterAtBall FlowField::EvalDeveloped(const Site& site) const {
   const CentrelinePoint& axis = site.spot.axis;
   const double radius_m = site.pipe.radius_m(), bulk = site.flow.velocity_m_s;
   const double reynolds = 2 * radius_m * std::abs(bulk) / water_.kinematic_viscosity_m2_s;
-  const DiscMean mean =
-      Tables(site.spot.pipe)
-          .body->Eval(CalcVelocityProfile(reynolds, site.flow.friction_factor), site.offset_m / radius_m);
+  const DiscMean mean = Tables(site.spot.pipe)
+                            .body->Eval(CalcVelocityProfile(reynolds, site.flow.friction_factor, profile_),
+                                        site.offset_m / radius_m);
   const double speed = bulk * mean.velocity * site.stretch;
   WaterAtBall water;
   water.velocity_W = speed * axis.tangent_W;
@@ -270,7 +271,7 @@ AxialFlow FlowField::CalcAxialFlow(const Site& site, const Jet& flow, const Jet&
   if (share.value == 0) return result;
   const double reynolds =
       2 * std::abs(flow.value) / (pi * site.pipe.radius_m() * water_.kinematic_viscosity_m2_s);
-  const VelocityProfile profile = CalcVelocityProfile(reynolds, site.flow.friction_factor);
+  const VelocityProfile profile = CalcVelocityProfile(reynolds, site.flow.friction_factor, profile_);
   const PipeTables& tables = Tables(site.spot.pipe);
   const Jet room = radius - Jet{ball_radius_m_, 0, 0}, scale = Inverse(room);
   const Jet weight = per_turn * share;

@@ -130,6 +130,7 @@ class FlowField {
   double ball_radius_m_;
   bool cross_flow_;
   SecondaryFlow secondary_;
+  ProfileLaw profile_;
   std::vector<PipeZones> zones_;                                     // per pipe
   mutable std::map<double, std::unique_ptr<DiscMeanTable>> tables_;  // by bore radius
   mutable std::vector<PipeTables> pipe_tables_;                      // per pipe

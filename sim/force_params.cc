@@ -21,6 +21,13 @@ void ForceParams::Visit(ParamVisitor& v) {
   v.Flag({"pressure_fall", "Pressure gradient of the pipe's friction."}, pressure_fall);
 }
 
+BallParams ApplyForces(BallParams ball, const ForceParams& forces) {
+  if (forces.rolling_resistance) return ball;
+  ball.rolling_resistance = 0;
+  ball.spinning_resistance = 0;
+  return ball;
+}
+
 void TurbulenceParams::Visit(ParamVisitor& v) {
   v.Flag({"on", "Whether the flow fluctuates."}, on);
   v.Number({"intensity", "Factor on the rms velocities of turbulent pipe flow."}, Range::Between(0, 3),

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/params.h"
+#include "sim/ball.h"
 
 namespace piperun::sim {
 
@@ -22,6 +23,9 @@ struct ForceParams {
 
   void Visit(ParamVisitor& v);
 };
+
+/// The ball with the resistances of the wall that act on it.
+BallParams ApplyForces(BallParams ball, const ForceParams& forces);
 
 /// Velocity fluctuations that the ball meets on its way (sim/turbulence.h).
 struct TurbulenceParams {

@@ -9,6 +9,7 @@
 #include "sim/fluid_load.h"
 #include "sim/force_params.h"
 #include "sim/launch.h"
+#include "sim/load_ranges.h"
 #include "sim/motion.h"
 #include "sim/stream_fluctuations.h"
 
@@ -43,7 +44,14 @@ double CalcResolvedShare(double z) {
 /// Share of a sudden change of the water's velocity that the ball takes part in without drag (chi,
 /// sim/turbulence.h).
 double CalcResponse(const BallParams& ball, const FluidLoadCoefficients& c) {
-  return std::min(1.0, (c.displaced_mass_kg + c.added_mass_kg) / (ball.mass_kg() + c.added_mass_kg));
+  return std::min(1.0, c.accelerated_mass_kg / (ball.mass_kg() + c.added_mass_kg));
+}
+
+/// Of the bores the ball may come through; first the one it is put into.
+std::vector<double> BoreRadii_m(const MotionContext& context) {
+  std::vector<double> radii_m{context.network->pipe(context.launch.pipe).radius_m()};
+  for (const Pipe& pipe : context.network->pipes()) radii_m.push_back(pipe.radius_m());
+  return radii_m;
 }
 
 TubeBall MakeTubeBall(const BallParams& ball, const FluidLoadCoefficients& c) {
@@ -66,10 +74,12 @@ class BallInPipe : public Motion {
         way_(*context.network, context.launch),
         field_(*context.bore, *context.flow, context.water, context.gravity_W.norm(), context.ball.radius_m,
                params.stream),
-        coefficients_(CalcFluidLoadCoefficients(context.ball, context.water, context.gravity_W)),
+        coefficients_(CalcFluidLoadCoefficients(context.ball, params.forces, context.water, context.gravity_W,
+                                                BoreRadii_m(context))),
+        ranges_(coefficients_, context.water, FindProfileLaw(params.stream.profile)),
         fluctuations_(params.stream, context.seed, context.run, rate_, 2 * context.ball.radius_m,
                       CalcResponse(context.ball, coefficients_), context.water.kinematic_viscosity_m2_s),
-        world_(*context.bore, MakeTubeBall(context.ball, coefficients_), rate_,
+        world_(*context.bore, MakeTubeBall(ApplyForces(context.ball, params.forces), coefficients_), rate_,
                MakeLaunch(context, context.lateral_sd_m),
                [this](const BallInstant& ball) { return EvalLoad(ball); }) {
     Publish();
@@ -83,7 +93,7 @@ class BallInPipe : public Motion {
   const Way* way() const override { return &way_; }
 
   std::vector<std::string> notes() const override {
-    std::vector<std::string> notes;
+    std::vector<std::string> notes = ranges_.Sentences();
     if (held_back_ > 0) {
       notes.push_back("drag was held back in " + std::to_string(held_back_) +
                       " steps, too stiff for them (a ball that nearly fills its bore in fast water); raise "
@@ -111,6 +121,7 @@ class BallInPipe : public Motion {
     water_ = field_.Eval(ball.spot, ball.p_LB, ball.time, fluctuations_.swirl());
     fluctuations_.AddTo(ball.spot, ball.p_LB, water_);
     FluidLoad load = CalcFluidLoad(coefficients_, ball.v_WB_W, ball.w_WB_W, water_);
+    ranges_.Feed(load.numbers, water_);
     const double slip_m_s = (water_.velocity_W - ball.v_WB_W).norm();
     const double inertia_kg = context_.ball.mass_kg() + coefficients_.added_mass_kg;
     if (slip_m_s > 0) {
@@ -203,6 +214,7 @@ class BallInPipe : public Motion {
   Way way_;
   FlowField field_;
   FluidLoadCoefficients coefficients_;
+  LoadRanges ranges_;
   StreamFluctuations fluctuations_;
   WaterAtBall water_;  // where and when the world evaluated the loads last: at its present state
   bool too_large_ = false;

@@ -1,5 +1,6 @@
 #include <benchmark/benchmark.h>
 
+#include "sim/fluid_load.h"
 #include "sim/hydraulics.h"
 #include "sim/motion.h"
 #include "sim/stream_fluctuations.h"
@@ -32,6 +33,29 @@ void WorldStep(benchmark::State& state, const std::vector<Vector3d>& points) {
   }
   state.SetItemsProcessed(state.iterations());
 }
+
+/// All loads on a ball that rolls along with the water; the slip changes, so that nothing is foreseen.
+void LoadEval(benchmark::State& state, const ForceParams& forces) {
+  const std::vector<double> bores{0.075};
+  const FluidLoadCoefficients c =
+      CalcFluidLoadCoefficients({}, forces, CalcWater(15), {0, 0, -9.80665}, bores);
+  WaterAtBall water;
+  water.bore_radius_m = bores[0];
+  water.from_wall_W = Vector3d::UnitZ();
+  water.spin_W = {0, 3, 0};
+  double slip_m_s = 0;
+  for (auto _ : state) {
+    slip_m_s = slip_m_s < 0.5 ? slip_m_s + 1e-3 : 1e-3;
+    water.velocity_W = {0.8 + slip_m_s, 0, 0};
+    benchmark::DoNotOptimize(CalcFluidLoad(c, {0.8, 0, 0}, {0, 27, 0}, water));
+  }
+}
+
+BENCHMARK_CAPTURE(LoadEval, all, ForceParams{});
+BENCHMARK_CAPTURE(LoadEval, clift_grace_weber, ForceParams{.drag = "clift_grace_weber"});
+BENCHMARK_CAPTURE(LoadEval, barati_high, ForceParams{.drag = "barati_high"});
+BENCHMARK_CAPTURE(LoadEval, free_drag_only,
+                  ForceParams{.wall_factor = "none", .rolling_drag = false, .lift = false, .magnus = false});
 
 std::vector<Vector3d> ZigZag() {
   std::vector<Vector3d> points{Vector3d::Zero()};

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -135,8 +137,10 @@ TEST(BallInNetwork, ABallThatNearlyFillsItsBoreStaysInItWhereTheWaterRaces) {
     EXPECT_EQ(motion->status(), MotionStatus::kDeadEnd) << radius_m;
     EXPECT_NEAR(motion->state().chainage_m, 3, 0.026) << radius_m;
     EXPECT_LT(motion->state().v_WB_W.norm(), 0.1) << radius_m;
-    ASSERT_EQ(motion->notes().size(), 1u) << "that drag was held back is said";
-    EXPECT_NE(motion->notes().front().find("raise motion.rate_Hz"), std::string::npos);
+    const std::vector<std::string> notes = motion->notes();
+    EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
+      return note.find("raise motion.rate_Hz") != std::string::npos;
+    })) << "that drag was held back is said";
   }
 }
 

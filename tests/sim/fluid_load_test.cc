@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "sim/ball_world.h"
 #include "tests/support/pipes.h"
@@ -19,8 +20,12 @@ const WaterProperties kWater{20, 1000, 1e-6, 1482};
 constexpr double kGravity = 9.81;
 const BallParams kBall{.radius_m = 0.03, .density_kg_m3 = 1100, .added_mass_coefficient = 0.5};
 
-FluidLoadCoefficients Coefficients(const BallParams& ball = kBall) {
-  return CalcFluidLoadCoefficients(ball, kWater, {0, 0, -kGravity});
+/// Without what a wall adds: the laws below are those of a free ball, or of one on the axis.
+const ForceParams kFarFromWalls{.rolling_drag = false, .lift = false, .magnus = false};
+
+FluidLoadCoefficients Coefficients(const BallParams& ball = kBall,
+                                   const ForceParams& forces = kFarFromWalls) {
+  return CalcFluidLoadCoefficients(ball, forces, kWater, {0, 0, -kGravity}, std::vector<double>{0.075});
 }
 
 /// Water at rest in a bore.
@@ -107,6 +112,142 @@ TEST(FluidLoad, SpinTorqueOfTheReferenceBall) {
   ball.spin_drag_factor = 0.6;
   const FluidLoad load = CalcFluidLoad(Coefficients(ball), Vector3d::Zero(), {0, 100.0 / 3, 0}, Still(0.075));
   EXPECT_NEAR(load.spin_torque_W_N_m.y(), -0.6 * 5.172e-4, 2e-7);
+}
+
+/// A ball that touches the floor of a bore along x.
+WaterAtBall OnTheFloor(double bore_radius_m) {
+  WaterAtBall water = Still(bore_radius_m);
+  water.from_wall_W = Vector3d::UnitZ();
+  return water;
+}
+
+TEST(FluidLoad, LiftPushesOffTheWallAndIsThatOfTheSlipAlongThePipe) {
+  WaterAtBall water = OnTheFloor(1e4);
+  water.velocity_W = {0.5, 0.3, -0.2};
+  const FluidLoad load = CalcFluidLoad(Coefficients(kBall, {}), {-0.1, 0, 0}, Vector3d::Zero(), water);
+  // 500 pi 0.03^2 0.2 0.6^2 = 0.10179 N: lifts the ball, which weighs 0.111 N, at 0.63 m/s
+  EXPECT_NEAR(load.lift_W_N.z(), 0.101788, 1e-6);
+  EXPECT_EQ(load.lift_W_N.head<2>().norm(), 0);
+}
+
+TEST(FluidLoad, LiftFadesFromTheWallAndIsNilOnTheAxis) {
+  WaterAtBall water = OnTheFloor(0.075);
+  water.velocity_W = {1, 0, 0};
+  const auto lift = [&](double gap_m) {
+    water.wall_gap_m = gap_m;
+    return CalcFluidLoad(Coefficients(kBall, {}), Vector3d::Zero(), Vector3d::Zero(), water).lift_W_N.z();
+  };
+  const double full = 500 * std::numbers::pi * 0.03 * 0.03 * 0.2;
+  EXPECT_NEAR(lift(0) / full, 1 - 1.0 / 64, 1e-12);                     // (3/12)^3 of the wall across
+  EXPECT_NEAR(lift(0.03) / full, 0.125 - std::pow(1 / 3.0, 3), 1e-12);  // (3/6)^3 - (3/9)^3
+  EXPECT_NEAR(lift(0.045), 0, 1e-15);
+}
+
+TEST(FluidLoad, MagnusForceOfATopspinPointsDown) {
+  // along x with the top going forward (w along y), far from walls: as a tennis ball with topspin, it dives.
+  // S = 0.03 2/0.5 = 0.12, F = 500 pi 0.03^2 0.2 0.12 0.5^2 / sqrt(1 + (0.024/0.5)^2) = 8.472e-3 N
+  const FluidLoad load = CalcFluidLoad(Coefficients(kBall, {}), {0.5, 0, 0}, {0, 2, 0}, Still(1e4));
+  EXPECT_NEAR(load.magnus_W_N.z(), -8.4725e-3, 1e-6);
+  EXPECT_EQ(load.magnus_W_N.head<2>().norm(), 0);
+}
+
+TEST(FluidLoad, MagnusForceIsOfTheMotionAgainstTheWaterAndSaturates) {
+  // carried with the water and turning with it there is none; at most 0.5 of the slip's dynamic pressure
+  WaterAtBall water = Still(0.075);
+  water.velocity_W = {1, 0, 0};
+  water.spin_W = {0, -5, 0};
+  const FluidLoadCoefficients c = Coefficients(kBall, {});
+  EXPECT_EQ(CalcFluidLoad(c, {0.9, 0, 0}, {0, -5, 0}, water).magnus_W_N.norm(), 0);
+  EXPECT_EQ(CalcFluidLoad(c, {1, 0, 0}, {0, 30, 0}, water).magnus_W_N.norm(), 0);
+  const double pressure_N = 500 * std::numbers::pi * 0.03 * 0.03 * 0.01;
+  const double lift = CalcFluidLoad(c, {0.9, 0, 0}, {0, 1e4, 0}, water).magnus_W_N.z();
+  EXPECT_NEAR(lift / pressure_N, 0.5, 1e-4) << "slower than the water, topspin lifts";
+}
+
+TEST(FluidLoad, RollingDownAPlaneIsJanAndChens) {
+  // C_D = (4/3) (SG - 1) g d sin(slope) / V^2 holds all the water's resistance: drag, and torque over radius,
+  // to be overcome by the weight's part down the plane. Expected speed from the printed law.
+  for (const double sg : {1.02, 1.1, 1.5}) {
+    for (const double k_spin : {0.0, 0.6, 1.0}) {
+      BallParams ball = kBall;
+      ball.density_kg_m3 = 1000 * sg;
+      ball.spin_drag_factor = k_spin;
+      const double d = 0.06, slope = 0.05;
+      double v = 0.1;
+      for (int i = 0; i < 200; ++i) {
+        const double x = std::log10(v * d / 1e-6);
+        const double c_d = std::max(0.74, std::pow(10, 3.02 - 1.89 * x + 0.411 * x * x - 0.033 * x * x * x));
+        v = std::sqrt(4.0 / 3 * (sg - 1) * kGravity * d * std::sin(slope) / c_d);
+      }
+      const FluidLoad load =
+          CalcFluidLoad(Coefficients(ball, {}), {v, 0, 0}, {0, v / 0.03, 0}, OnTheFloor(1e5));
+      const double resistance = -load.drag_W_N.x() - load.spin_torque_W_N_m.y() / 0.03;
+      EXPECT_NEAR(resistance / (load.weight_W_N.norm() * std::sin(slope)), 1, 1e-9) << sg << " " << k_spin;
+    }
+  }
+}
+
+TEST(FluidLoad, WallsDragFadesToTheTubesOnTheAxis) {
+  WaterAtBall water = OnTheFloor(0.075);
+  water.velocity_W = {0.3, 0, 0};
+  const auto drag = [&](const ForceParams& forces, double gap_m) {
+    water.wall_gap_m = gap_m;
+    return CalcFluidLoad(Coefficients(kBall, forces), Vector3d::Zero(), Vector3d::Zero(), water).drag_W_N.x();
+  };
+  EXPECT_GT(drag({}, 0), drag({}, 0.01));
+  EXPECT_GT(drag({}, 0.01), drag({}, 0.045));
+  EXPECT_DOUBLE_EQ(drag({}, 0.045), drag(kFarFromWalls, 0.045));
+}
+
+TEST(FluidLoad, EverySwitchTakesItsOwnLoadAwayAndNoOther) {
+  WaterAtBall water = OnTheFloor(0.075);
+  water.velocity_W = {0.4, 0.1, 0};
+  water.acceleration_W = {0, 2, 0};
+  water.spin_W = {0, 3, 0};
+  water.pressure_fall_W_Pa_m = {67, 0, 0};
+  const auto calc = [&](const ForceParams& forces) {
+    return CalcFluidLoad(Coefficients(kBall, forces), {0.1, 0, 0}, {0, 10, 0}, water);
+  };
+  const FluidLoad all = calc({});
+  const auto expect_without = [&](const ForceParams& forces, Vector3d FluidLoad::*gone) {
+    FluidLoad expected = all;
+    EXPECT_GT((expected.*gone).norm(), 0);
+    expected.*gone = Vector3d::Zero();
+    EXPECT_EQ(calc(forces).*gone, Vector3d::Zero());
+    EXPECT_EQ(calc(forces).Force_W_N(), expected.Force_W_N());
+  };
+  expect_without({.lift = false}, &FluidLoad::lift_W_N);
+  expect_without({.magnus = false}, &FluidLoad::magnus_W_N);
+  expect_without({.fluid_acceleration = false}, &FluidLoad::fluid_acceleration_W_N);
+  expect_without({.pressure_fall = false}, &FluidLoad::pressure_fall_W_N);
+  EXPECT_EQ(calc({.spin_torque = false}).spin_torque_W_N_m, Vector3d::Zero());
+  EXPECT_LT(calc({.rolling_drag = false}).drag_W_N.norm(), all.drag_W_N.norm());
+  EXPECT_LT(calc({.wall_factor = "none"}).drag_W_N.norm(), all.drag_W_N.norm());
+  EXPECT_NE(calc({.drag = "morrison"}).drag_W_N, all.drag_W_N);
+}
+
+TEST(FluidLoad, WallFactorIsTheSameFromItsTableAndSolved) {
+  WaterAtBall water = Still(0.075);
+  const FluidLoadCoefficients with_table = Coefficients();
+  FluidLoadCoefficients without = with_table;
+  without.wall_factors.clear();
+  for (double v = 1e-6; v < 20; v *= 3) {
+    const Vector3d v_WB_W(v, 0, 0);
+    const double table = CalcFluidLoad(with_table, v_WB_W, Vector3d::Zero(), water).drag_W_N.x();
+    EXPECT_NEAR(table / CalcFluidLoad(without, v_WB_W, Vector3d::Zero(), water).drag_W_N.x(), 1, 1e-6) << v;
+  }
+}
+
+TEST(FluidLoad, AddedMassIsThatOfTheFirstBoreUnlessGiven) {
+  const double displaced_kg = 1000 * kBall.volume_m3();
+  EXPECT_DOUBLE_EQ(Coefficients().added_mass_kg, 0.5 * displaced_kg);
+  BallParams ball = kBall;
+  ball.added_mass_coefficient.reset();
+  EXPECT_DOUBLE_EQ(Coefficients(ball).added_mass_kg, 0.621 * displaced_kg);  // d/D = 0.4: as along a plane
+  const std::vector<double> bores{0.0375, 0.075};
+  EXPECT_NEAR(
+      CalcFluidLoadCoefficients(ball, {}, kWater, Vector3d::Zero(), bores).added_mass_kg / displaced_kg,
+      1.565, 0.01);  // d/D = 0.8
 }
 
 TEST(FluidLoad, SinkingBallReachesTerminalVelocity) {
