@@ -61,8 +61,7 @@ CrossFlow CalcCrossFlow(const CrossPlace& place, const CrossSpeed& speed) {
 }
 
 CrossAddition CalcCrossAddition(const CrossPlace& place, const CrossSpeed& speed, const AxialFlow& main,
-                                const Vector3d& main_velocity_W, double change_1_s,
-                                double swirl_change_m_s2) {
+                                const Vector3d& main_velocity_W, double change_1_s) {
   const CrossFlow cross = CalcCrossFlow(place, speed);
   const Vector3d &u2 = cross.velocity_W, &d = place.offset_W;
   const double r = d.norm(), stretch = 1 / (1 - d.dot(place.curvature_W));
@@ -74,9 +73,9 @@ CrossAddition CalcCrossAddition(const CrossPlace& place, const CrossSpeed& speed
   addition.velocity_W = u2;
   addition.acceleration_W = cross.gradient_1_s * (main_velocity_W + u2) + along * place.axis_W +
                             main.radial_over_r_1_s * u2 + squeeze * outward * out + change_1_s * u2;
-  if (swirl_change_m_s2 != 0) {
+  if (speed.swirl_change_m_s2 != 0) {
     CrossSpeed change;
-    change.swirl_m_s = swirl_change_m_s2;  // the field is linear in it
+    change.swirl_m_s = speed.swirl_change_m_s2;  // the field is linear in it
     addition.acceleration_W += CalcCrossFlow(place, change).velocity_W;
   }
   addition.spin_W = 0.5 * cross.Curl_1_s();

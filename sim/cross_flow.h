@@ -22,6 +22,7 @@ struct CrossSpeed {
   Vector3d cells_slope_W_1_s = Vector3d::Zero();
   double swirl_m_s = 0;  ///< c
   double swirl_slope_1_s = 0;
+  double swirl_change_m_s2 = 0;  ///< dc/dt of water whose flow rate stays
 
   /// False where nothing is left of the last bend's.
   bool Matters() const {
@@ -43,8 +44,8 @@ struct CrossFlow {
 /// Two cells with stream function w R (r/R)(1 - (r/R)^2) sin(theta), w in the middle and 2 w back along the
 /// walls, and a single one that turns with c (r/R)(1 - (r/R)^2), as means over the ball's disc,
 ///
-///   u = k (p w - 2/R^2 (d . (t x w)) d x t + c/R p t x d),   p = 1 - (b^2 + r^2)/R^2,   k = 1/(1 - d .
-///   kappa)
+///   u = k (p w - 2/R^2 (d . (t x w)) d x t + c/R p t x d)
+///   p = 1 - (b^2 + r^2)/R^2,   k = 1/(1 - d . kappa)
 ///
 /// (the mean of a cubic f over a disc of radius b is f + b^2/8 laplace f). k makes it free of divergence in
 /// bends, too. For b = 0 it is tangent to the wall. Exact gradient, the variation along s included.
@@ -57,9 +58,9 @@ struct CrossAddition {
   Vector3d spin_W = Vector3d::Zero();          ///< 1/2 curl u2
 };
 
-/// `main`: u1 before the stretch k. du2/dt = `change_1_s` u2 (the flow rate's dQ/dt over Q) + what
-/// `swirl_change_m_s2` makes of the swirl, its change beyond that.
+/// `main`: u1 before the stretch k. du2/dt = `change_1_s` u2 (the flow rate's dQ/dt over Q) + what dc/dt
+/// makes.
 CrossAddition CalcCrossAddition(const CrossPlace& place, const CrossSpeed& speed, const AxialFlow& main,
-                                const Vector3d& main_velocity_W, double change_1_s, double swirl_change_m_s2);
+                                const Vector3d& main_velocity_W, double change_1_s);
 
 }  // namespace piperun::sim

@@ -319,7 +319,8 @@ CrossSpeed FlowField::CalcCrossSpeed(const Site& site, const Jet& bulk) const {
   const double speed = std::abs(bulk.value), change = bulk.value < 0 ? -bulk.d1 : bulk.d1;
   const double swirl = kSwirlSpeed * site.swirl.s;
   return {speed * strength.cells_W, change * strength.cells_W + speed * slope.cells_W,
-          swirl * speed * strength.swirl, swirl * (change * strength.swirl + speed * slope.swirl)};
+          swirl * speed * strength.swirl, swirl * (change * strength.swirl + speed * slope.swirl),
+          kSwirlSpeed * site.swirl.ds_dt_1_s * speed * strength.swirl};
 }
 
 void FlowField::AddCrossFlow(const Site& site, const Jet& flow, const Jet& share, const AxialFlow& main,
@@ -332,9 +333,8 @@ void FlowField::AddCrossFlow(const Site& site, const Jet& flow, const Jet& share
   const CentrelinePoint& axis = site.spot.axis;
   const CrossPlace place{axis.tangent_W, axis.curvature_W, site.offset,
                          radius.value,   radius.d1,        ball_radius_m_};
-  const double switching = site.swirl.s != 0 ? speed.swirl_m_s / site.swirl.s * site.swirl.ds_dt_1_s : 0;
-  const CrossAddition addition = CalcCrossAddition(place, speed, main, water.velocity_W,
-                                                   site.flow.dflow_dt_m3_s2 / flow.value, switching);
+  const CrossAddition addition =
+      CalcCrossAddition(place, speed, main, water.velocity_W, site.flow.dflow_dt_m3_s2 / flow.value);
   water.velocity_W += addition.velocity_W;
   water.acceleration_W += addition.acceleration_W;
   water.spin_W += addition.spin_W;

@@ -25,7 +25,7 @@ StreamFluctuations::StreamFluctuations(const StreamParams& params, std::uint64_t
       viscosity_m2_s_(viscosity_m2_s) {
   if (turbulent_) state_.turbulence = StartTurbulence(turbulence_noise_.SixNormals(0, 0));
   if (!switching_) return;
-  const auto start = swirl_noise_.Normals(0, 0);
+  const auto start = swirl_noise_.SixNormals(0, 0);
   state_.swirl = start[0];
   state_.swirl_partner = start[1];
 }
@@ -44,7 +44,7 @@ void StreamFluctuations::StepSwirl() {
   const double omega = state_.swirl_omega_1_s;
   if (omega == 0) return;
   const OscillatorStep step = CalcOscillatorStep(omega, kSwirlDamping * omega, period_s_);
-  const auto n = swirl_noise_.Normals(static_cast<std::uint64_t>(state_.step), 0);
+  const auto n = swirl_noise_.SixNormals(static_cast<std::uint64_t>(state_.step), 0);
   const double s = state_.swirl, y = state_.swirl_partner;
   state_.swirl = step.keep_x * s + step.trade * y + step.noise_xy * n[0] + step.noise_x * n[1];
   state_.swirl_partner = step.keep_y * y - step.trade * s + step.noise_y * n[0];
