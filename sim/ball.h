@@ -15,8 +15,10 @@ inline constexpr double kMaxDiameterRatio = 0.95;
 ///
 /// k_spin is a calibration on Ellis (Can. J. Chem. Eng. 42 (1964), Capsules Part 5, abstract), who measured
 /// v/U = 1.04 to 1.08 for spheres denser than water with d/D > 0.5 in a 32 mm pipe above 0.61 m/s. For SG 1.2
-/// at 1.2 m/s and d/D = 0.6, 0.7, 0.8 our balance gives 1.045, 1.074, 1.081 with 0.6, and 1.006, 1.035, 1.048
-/// with the full torque of a sphere far from walls (k_spin = 1). 0.5 to 0.75 stay within 0.02 of the band.
+/// at 1 m/s and d/D = 0.6, 0.7, 0.8 our balance gives 1.046, 1.066, 1.080 with 0.6, and 1.012, 1.033, 1.044
+/// with the full torque of a sphere far from walls (k_spin = 1). 0.5 to 0.75 stay within 0.02 of the band
+/// from 0.7 to 1.5 m/s. Balls whose weight the lift takes off the wall slide, and are outside the
+/// calibration.
 struct BallParams {
   double radius_m = 0.03;
   double density_kg_m3 = 1100;            ///< mean density
@@ -31,12 +33,12 @@ struct BallParams {
   double rolling_resistance = 0.01;   ///< c_rr: resisting torque = c_rr r N
   double spinning_resistance = 0.01;  ///< c_sp: torque about the wall's normal = c_sp r N
   double restitution = 0;             ///< normal speed after an impact over the one before
-  std::optional<double> added_mass_coefficient{};  ///< empty: by d/D
+  std::optional<double> added_mass_coefficient{};  ///< empty: by d/D (sim/added_mass.h)
   std::optional<double> contact_stiffness_N_m{};   ///< of ball and wall together; empty: rigid
   double contact_damping_N_s_m = 0;                ///< not read when rigid
   double spin_drag_factor = 0.6;    ///< k_spin: share of the free sphere's spin torque; see above
   double lift_coefficient = 0.2;    ///< C_L of the wall lift, +- 0.1
-  double magnus_coefficient = 0.2;  ///< C_M per spin parameter w r / |u - v|, 0.1 to 0.4
+  double magnus_coefficient = 0.2;  ///< C_M per spin parameter w r / |u - v|, 0.1 to 0.4; C_M S <= 0.5
   double clock_offset_s = 0;
   double clock_drift_ppm = 0;
 

@@ -46,7 +46,7 @@ struct Reynolds {
 ///   Re <    1e6     0.10 L - 0.49       reprints have 0.19 L, which would jump by 0.5 at 4e5
 ///   above           0.19 - 8e4/Re       from memory; meets its neighbour at 1e6
 ///
-/// Neighbouring segments do not meet (by 22 % at 4e5, by up to 1.2 % elsewhere): below each limit a segment
+/// Neighbouring segments do not meet (by 21 % at 4e5, by up to 0.8 % elsewhere): below each limit a segment
 /// goes over into the next by a cubic step, over the last 5 % of Re. Below Re = 0.01 Barati's formula, which
 /// grows without bounds at rest, is a straight line C_D Re to Stokes' 24.
 enum class DragLaw { kBrownLawler, kCliftGauvin, kCliftGauvin1970, kCliftGraceWeber, kMorrison, kBaratiHigh };

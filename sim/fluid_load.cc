@@ -14,8 +14,10 @@ namespace {
 constexpr double kMostMagnus = 0.5;
 
 double CalcLogWallFactor(const FluidLoadCoefficients& c, double diameter_ratio, const Reynolds& reynolds) {
-  for (const WallFactorTable& table : c.wall_factors) {
-    if (table.diameter_ratio() == diameter_ratio) return table.EvalLog(reynolds);
+  const auto table =
+      std::ranges::lower_bound(c.wall_factors, diameter_ratio, {}, &WallFactorTable::diameter_ratio);
+  if (table != c.wall_factors.end() && table->diameter_ratio() == diameter_ratio) {
+    return table->EvalLog(reynolds);
   }
   return SolveLogWallFactor(c.wall_factor, diameter_ratio, reynolds);
 }

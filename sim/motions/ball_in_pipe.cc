@@ -47,10 +47,12 @@ double CalcResponse(const BallParams& ball, const FluidLoadCoefficients& c) {
   return std::min(1.0, c.accelerated_mass_kg / (ball.mass_kg() + c.added_mass_kg));
 }
 
-/// Of the bores the ball may come through; first the one it is put into.
+/// Of the pipes that are open to the ball; first the one it is put into.
 std::vector<double> BoreRadii_m(const MotionContext& context) {
   std::vector<double> radii_m{context.network->pipe(context.launch.pipe).radius_m()};
-  for (const Pipe& pipe : context.network->pipes()) radii_m.push_back(pipe.radius_m());
+  for (int i = 0; i < static_cast<int>(context.network->pipes().size()); ++i) {
+    if (context.bore->open(i)) radii_m.push_back(context.network->pipe(i).radius_m());
+  }
   return radii_m;
 }
 

@@ -238,6 +238,25 @@ TEST(FluidLoad, WallFactorIsTheSameFromItsTableAndSolved) {
   }
 }
 
+TEST(FluidLoad, RoughOrFoamCoveredBallHasNoDragCrisis) {
+  // at Re = 4e5 Morrison's smooth sphere has C_D = 0.0874; before its crisis 0.435
+  const auto drag_coefficient = [](const BallParams& ball) {
+    const FluidLoadCoefficients c = Coefficients(
+        ball,
+        {.drag = "morrison", .wall_factor = "none", .rolling_drag = false, .lift = false, .magnus = false});
+    const double v = 4e5 * 1e-6 / 0.06;
+    return -CalcFluidLoad(c, {v, 0, 0}, Vector3d::Zero(), Still(1e4)).drag_W_N.x() /
+           (500 * std::numbers::pi * 0.03 * 0.03 * v * v);
+  };
+  BallParams smooth = kBall, rough = kBall, foam = kBall;
+  smooth.roughness_m = 0.9e-3 * 0.06;
+  rough.roughness_m = 1e-3 * 0.06;
+  foam.foam_thickness_m = 0.01;
+  EXPECT_NEAR(drag_coefficient(smooth), 0.0874, 1e-4);
+  EXPECT_NEAR(drag_coefficient(rough), 0.4354, 1e-4);
+  EXPECT_NEAR(drag_coefficient(foam), 0.4354, 1e-4);
+}
+
 TEST(FluidLoad, AddedMassIsThatOfTheFirstBoreUnlessGiven) {
   const double displaced_kg = 1000 * kBall.volume_m3();
   EXPECT_DOUBLE_EQ(Coefficients().added_mass_kg, 0.5 * displaced_kg);
