@@ -80,7 +80,12 @@ void AddFeetOf(const ServiceHole& hole, const Vector3d& p_G, double limit_m, dou
   hole.AddFeet(p_G, limit_m, ring_m, feet);
 }
 
-ShapeExtent ExtentOf(const RingBead& ring) { return {-ring.tube_radius_m, ring.tube_radius_m}; }
+/// Radius of the circle through both ends of a cap and its top.
+double CalcCapRadius_m(double height_m, double width_m) {
+  return (height_m * height_m + 0.25 * width_m * width_m) / (2 * height_m);
+}
+
+ShapeExtent ExtentOf(const RingBead& ring) { return {-ring.half_width_m, ring.half_width_m}; }
 ShapeExtent ExtentOf(const GrooveRim& rim) {
   return {std::min(0.0, rim.side * rim.edge_radius_m), std::max(0.0, rim.side * rim.edge_radius_m)};
 }
@@ -93,7 +98,7 @@ ShapeExtent ExtentOf(const OffsetSleeve& sleeve) {
   const double lean_m = sleeve.bore_radius_m * sleeve.offset_m / sleeve.ramp_m;
   return {-sleeve.edge_radius_m - lean_m, sleeve.ramp_m + lean_m};
 }
-ShapeExtent ExtentOf(const Boss& boss) { return {-boss.radius_m, boss.radius_m}; }
+ShapeExtent ExtentOf(const Boss& boss) { return {-boss.base_m, boss.base_m}; }
 ShapeExtent ExtentOf(const GateLeaf& gate) { return {-gate.half_thickness_m, gate.half_thickness_m}; }
 ShapeExtent ExtentOf(const ServiceHole& hole) { return {-hole.radius_m(), hole.radius_m()}; }
 
@@ -122,6 +127,16 @@ bool ServiceHole::Covers(const Vector3d& q_G) const {
 
 void ServiceHole::AddFeet(const Vector3d& p_G, double limit_m, double ring_m, WallFeet& feet) const {
   edge_->lip.AddFeet(edge_->members, p_G, limit_m, ring_m, feet);
+}
+
+RingBead MakeRingBead(double bore_radius_m, double height_m, double width_m) {
+  const double a = CalcCapRadius_m(height_m, width_m);
+  return {bore_radius_m - height_m + a, a, 0.5 * width_m};
+}
+
+Boss MakeBoss(double bore_radius_m, double height_m, double base_diameter_m) {
+  const double a = CalcCapRadius_m(height_m, base_diameter_m);
+  return {bore_radius_m - height_m + a, a, 0.5 * base_diameter_m};
 }
 
 ShapeExtent CalcExtent(const ShapeBody& body) {

@@ -18,6 +18,7 @@ namespace piperun::sim {
 struct RingBead {
   double circle_radius_m = 0;  ///< R_c
   double tube_radius_m = 0;    ///< a
+  double half_width_m = 0;     ///< of what stands out of the wall
 };
 
 /// One rim of a groove: the bore's wall goes over into the groove's face along a rounding of radius a. The
@@ -49,6 +50,7 @@ struct OffsetSleeve {
 struct Boss {
   double centre_m = 0;  ///< c
   double radius_m = 0;  ///< a
+  double base_m = 0;    ///< radius of the cap's base
 };
 
 /// A gate across the bore: |x| <= b, y >= y_e, its edge rounded by a.
@@ -91,7 +93,12 @@ struct WallFeature {
   std::vector<FeatureShape> shapes;
 };
 
-/// From where to where along x a body reaches.
+/// The torus of which a cap of height h and width w stands out of the wall: a = (h^2 + (w/2)^2) / 2h.
+RingBead MakeRingBead(double bore_radius_m, double height_m, double width_m);
+/// The sphere of which a cap of height h on a base of diameter b stands out of the wall.
+Boss MakeBoss(double bore_radius_m, double height_m, double base_diameter_m);
+
+/// From where to where along x a body reaches into the bore.
 struct ShapeExtent {
   double begin_m = 0;
   double end_m = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "base/check.h"
@@ -31,10 +32,35 @@ bool IsOnStraight(const Pipe& pipe, double a_m, double b_m) {
   });
 }
 
+/// Radius, along the pipe, of the wall on the inner side of the tightest bend between a and b; a bend behind
+/// a smooth joint counts.
+double FindTightestInside_m(const WallFeatureSite& site, double a_m, double b_m) {
+  double tightest_m = std::numeric_limits<double>::infinity();
+  const auto count = [&](const CentrelinePiece& piece) {
+    if (!piece.straight()) {
+      tightest_m = std::min(tightest_m, 1 / piece.curvature_1_m - site.At().radius_m());
+    }
+  };
+  for (const CentrelinePiece& piece : site.At().centreline) {
+    if (piece.s_begin_m < b_m && piece.s_end_m() > a_m) count(piece);
+  }
+  for (const bool at_to : {false, true}) {
+    const Joint& joint = site.bore.joint(at_to ? site.At().to : site.At().from);
+    if (!joint.smooth || (at_to ? b_m < site.At().length_m : a_m > 0)) continue;
+    const PipeEnd here{site.pipe, at_to};
+    const PipeEnd there = joint.arms[joint.arms[0].end == here ? 1 : 0].end;
+    const auto& next = site.bore.network().pipe(there.pipe).centreline;
+    count(there.at_to ? next.back() : next.front());
+  }
+  return tightest_m;
+}
+
 bool HasRoom(const WallFeatureSite& site, double s_m, const FeatureRoom& room) {
   const double a_m = s_m - room.before_m, b_m = s_m + room.after_m;
   if (a_m < CalcTaken_m(site, false) || b_m > site.At().length_m - CalcTaken_m(site, true)) return false;
-  return !room.straight || IsOnStraight(site.At(), a_m, b_m);
+  if (room.straight && !IsOnStraight(site.At(), a_m, b_m)) return false;
+  const double felt_m = site.At().diameter_m;
+  return FindTightestInside_m(site, a_m - felt_m, b_m + felt_m) > room.flattest_m;
 }
 
 void RequireRoom(const WallFeatureSite& site, double s_m, const FeatureRoom& room) {
@@ -46,7 +72,11 @@ void RequireRoom(const WallFeatureSite& site, double s_m, const FeatureRoom& roo
       FormatNumber(room.before_m) + " m before and " + FormatNumber(room.after_m) +
       " m behind, clear of reducers and of a diameter around joints of pipes: allowed " +
       (least_m <= most_m ? "[" + FormatNumber(least_m) + ", " + FormatNumber(most_m) + "]" : "nowhere");
-  if (room.straight) problem += ", and on one straight";
+  if (room.straight) problem += ", on one straight";
+  if (room.flattest_m > 0) {
+    problem += ", and no bend within a diameter whose inner side is tighter than its own curve, " +
+               FormatNumber(room.flattest_m) + " m";
+  }
   throw InputError(problem, "s_m");
 }
 

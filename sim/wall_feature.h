@@ -31,6 +31,9 @@ struct FeatureRoom {
   double before_m = 0;    ///< of undisturbed bore before its place
   double after_m = 0;     ///< and behind
   bool straight = false;  ///< all on one straight
+  /// Its flattest curvature radius along the pipe: a bend within a diameter must be rounder on its inner
+  /// side, or the feature would reach out of the wall far from where it stands.
+  double flattest_m = 0;
 };
 
 /// Where features of one entry stand: one of them at `s_m`, or a series along the pipe,
@@ -47,9 +50,9 @@ struct FeaturePlaces {
   void Visit(ParamVisitor& v);
   /// The places, each with its number in the series (for RandomStream's sample). Places of a series without
   /// room are left out: beyond the pipe, in a reducer, within a diameter of what a joint of pipes reaches to,
-  /// in a bend where the feature must lie straight. Throws InputError (s_m, spacing_m, spacing_sd_m) when
-  /// neither or both ways are given, the scatter could turn the order round (above a ninth of the spacing),
-  /// or there is no room for the one at s_m.
+  /// in a bend where the feature must lie straight or is flatter than the bend. Throws InputError (s_m,
+  /// spacing_m, spacing_sd_m) when neither or both ways are given, the scatter could turn the order round
+  /// (above a ninth of the spacing), or there is no room for the one at s_m.
   struct Place {
     double s_m = 0;
     std::uint64_t number = 0;

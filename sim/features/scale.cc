@@ -1,23 +1,21 @@
 // A patch of scale, tubercles or sediment: lumps strewn over the wall.
 
-#include <cmath>
 #include <numbers>
 
 #include "base/check.h"
-#include "base/number.h"
 #include "sim/wall_feature.h"
 
 namespace piperun::sim {
 namespace {
 
-constexpr double kMostLumps = 20000;  // in one patch
+constexpr std::uint64_t kMostLumps = 20000;  // in one patch
 constexpr std::uint64_t kPlaceSlot = 1, kHeightSlot = 1;
 
 struct ScaleParams : ParamsOf<ScaleParams> {
   FeaturePlaces places;
   double length_m = 1;
   double cover = 0.2;
-  ScatteredSize height{0.002, 0.001};
+  ScatteredSize height{0.002, 0.0005};
   double lump_m = 0.02;
 
   void Visit(ParamVisitor& v) override {
@@ -26,52 +24,47 @@ struct ScaleParams : ParamsOf<ScaleParams> {
              {.min = 1e-3, .max = 1e4}, length_m);
     v.Number({"cover", "Area of the lumps' bases over the wall's; they may overlap."}, Range::Between(0, 1),
              cover);
-    v.Number({"height_m", "How far a lump stands out of the wall."}, Range::Between(0, 0.5), height.mean_m);
-    v.Number({"height_sd_m", "Scatter of the height from lump to lump."}, Range::Between(0, 0.1),
-             height.sd_m);
-    v.Number({"lump_diameter_m", "Diameter of a lump at the wall."}, {.min = 1e-3, .max = 1}, lump_m);
+    v.Number({"height_m", "How far a lump stands out of the wall."}, {.min = 0, .max = 0.5, .min_open = true},
+             height.mean_m);
+    v.Number({"height_sd_m", "Scatter of the height from lump to lump; a lower one is narrower."},
+             Range::Between(0, 0.1), height.sd_m);
+    v.Number({"lump_diameter_m", "Diameter at the wall of a lump of mean height."}, {.min = 1e-3, .max = 1},
+             lump_m);
   }
+  double Width_m(double height_m) const { return lump_m * height_m / height.mean_m; }
 };
 
-/// How many lumps cover that much of the wall.
-std::uint64_t CountLumps(const ScaleParams& p, double bore_radius_m) {
-  const double count = p.cover * 2 * bore_radius_m * p.length_m / (0.25 * p.lump_m * p.lump_m);
-  if (count > kMostLumps) {
-    throw InputError("this patch has " + FormatNumber(std::round(count)) + " lumps; allowed: up to " +
-                         FormatNumber(kMostLumps) + "; take larger lumps or several patches",
-                     "cover");
-  }
-  return static_cast<std::uint64_t>(std::llround(count));
-}
-
-/// A cap of height h on a base of diameter b: a = (h^2 + (b/2)^2) / 2h.
-Boss MakeLump(double bore_radius_m, double height_m, double diameter_m) {
-  const double a = (height_m * height_m + 0.25 * diameter_m * diameter_m) / (2 * height_m);
-  return {bore_radius_m - height_m + a, a};
-}
-
+/// Lumps until their bases, of pi/4 b^2 each, cover as much of the wall as they shall.
 WallFeature MakePatch(const ScaleParams& p, const WallFeatureSite& site, const FeaturePlaces::Place& place) {
   const double radius_m = site.At().radius_m();
-  const std::uint64_t lumps = CountLumps(p, radius_m);
+  double bare_m2 = p.cover * 2 * std::numbers::pi * radius_m * p.length_m;
   WallFeature patch{site.pipe, place.s_m, {}};
-  for (std::uint64_t i = 0; i < lumps; ++i) {
-    const std::uint64_t sample = (place.number + 1) * static_cast<std::uint64_t>(kMostLumps) * 2 + i;
+  for (std::uint64_t i = 0; bare_m2 > 0; ++i) {
+    if (i == kMostLumps) {
+      throw InputError("a patch has at most " + std::to_string(kMostLumps) +
+                           " lumps, and these do not cover that much; take larger lumps or shorter patches",
+                       "cover");
+    }
+    const std::uint64_t sample = 2 * (place.number + 1) * kMostLumps + i;
     const auto u = site.random.Uniforms(sample, kPlaceSlot);
     const double s_m = place.s_m + (u[0] - 0.5) * p.length_m;
-    const double height_m = p.height.Draw_m(site.random, sample, kHeightSlot);
+    const double height_m = p.height.Draw_m(site.random, sample, kHeightSlot), width_m = p.Width_m(height_m);
     if (height_m == 0) continue;
+    bare_m2 -= 0.25 * std::numbers::pi * width_m * width_m;
     patch.shapes.push_back(
-        {s_m, site.ClockDirection(s_m, 2 * std::numbers::pi * u[1]), MakeLump(radius_m, height_m, p.lump_m)});
+        {s_m, site.ClockDirection(s_m, 2 * std::numbers::pi * u[1]), MakeBoss(radius_m, height_m, width_m)});
   }
   return patch;
 }
 
 std::vector<WallFeature> Make(const Params& params, const WallFeatureSite& site) {
   const auto& p = static_cast<const ScaleParams&>(params);
-  RequireBelow(p.height.Largest_m(), site.At().radius_m(), "the bore's radius", "height_m");
-  const double half_m = 0.5 * (p.length_m + p.lump_m);
+  const double radius_m = site.At().radius_m(), most_m = p.height.Largest_m();
+  RequireBelow(most_m, radius_m, "the bore's radius", "height_m");
+  const Boss largest = MakeBoss(radius_m, most_m, p.Width_m(most_m));
+  const double half_m = 0.5 * p.length_m + largest.base_m;
   std::vector<WallFeature> patches;
-  for (const auto& place : p.places.Find(site, {half_m, half_m})) {
+  for (const auto& place : p.places.Find(site, {half_m, half_m, false, largest.radius_m})) {
     WallFeature patch = MakePatch(p, site, place);
     if (!patch.shapes.empty()) patches.push_back(std::move(patch));
   }

@@ -12,29 +12,25 @@ struct WeldBeadParams : ParamsOf<WeldBeadParams> {
 
   void Visit(ParamVisitor& v) override {
     places.Visit(v);
-    v.Number({"height_m", "How far it stands out of the wall, all around."}, Range::Between(0, 0.5),
-             height.mean_m);
-    v.Number({"height_sd_m", "Scatter of the height from bead to bead."}, Range::Between(0, 0.1),
-             height.sd_m);
+    v.Number({"height_m", "How far it stands out of the wall, all around."},
+             {.min = 0, .max = 0.5, .min_open = true}, height.mean_m);
+    v.Number({"height_sd_m", "Scatter of the height from bead to bead; a lower one is narrower."},
+             Range::Between(0, 0.1), height.sd_m);
     v.Number({"width_m", "Its width at the wall, along the pipe."}, {.min = 1e-4, .max = 1}, width_m);
   }
 };
 
-/// A torus whose cap of height h is w wide: a = (h^2 + (w/2)^2) / 2h.
-RingBead MakeBead(double bore_radius_m, double height_m, double width_m) {
-  const double a = (height_m * height_m + 0.25 * width_m * width_m) / (2 * height_m);
-  return {bore_radius_m - height_m + a, a};
-}
-
 std::vector<WallFeature> Make(const Params& params, const WallFeatureSite& site) {
   const auto& p = static_cast<const WeldBeadParams&>(params);
-  const double radius_m = site.At().radius_m();
-  RequireBelow(p.height.Largest_m(), radius_m, "the bore's radius", "height_m");
+  const double radius_m = site.At().radius_m(), most_m = p.height.Largest_m();
+  RequireBelow(most_m, radius_m, "the bore's radius", "height_m");
+  const double aspect = p.width_m / p.height.mean_m, half_m = 0.5 * aspect * most_m;
+  const RingBead largest = MakeRingBead(radius_m, most_m, aspect * most_m);
   std::vector<WallFeature> beads;
-  for (const auto& [s_m, number] : p.places.Find(site, {0.5 * p.width_m, 0.5 * p.width_m})) {
+  for (const auto& [s_m, number] : p.places.Find(site, {half_m, half_m, false, largest.tube_radius_m})) {
     const double height_m = p.height.Draw_m(site.random, number, 0);
     if (height_m == 0) continue;  // ground flush
-    const RingBead bead = MakeBead(radius_m, height_m, p.width_m);
+    const RingBead bead = MakeRingBead(radius_m, height_m, aspect * height_m);
     beads.push_back({site.pipe, s_m, {{s_m, site.ClockDirection(s_m, 0), bead}}});
   }
   return beads;

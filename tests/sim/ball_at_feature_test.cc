@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -78,8 +79,11 @@ TEST(BallAtFeature, SitsInAServiceHoleOnTheEdgesAcrossThePipe) {
   BoreNetwork line = Straight();
   AddFeatures(line.bore, "service_hole",
               {{"s_m", 1.0}, {"diameter_m", 2 * c}, {"clock_rad", std::numbers::pi}});
-  BallWorld world(line.bore, Ball(0.5, 0.01 * kRadius), Rate(1000), At(line.network, {1.002, 0, -kRun}),
-                  Weight);
+  // damped, not braked: rolling resistance would hold it a little off the middle
+  BallWorld world(line.bore, Ball(0.5), Rate(1000), At(line.network, {1.002, 0, -kRun}),
+                  [](const BallInstant& ball) {
+                    return BallLoad{Vector3d(0, 0, -kWeight) - 0.5 * ball.v_WB_W, Vector3d::Zero()};
+                  });
   for (int i = 0; i < 8000; ++i) world.Step();
   const double z = std::sqrt(kBore * kBore - c * c) - std::sqrt(kRadius * kRadius - c * c);
   EXPECT_NEAR(-world.state().X_LB.p.z(), z, 1e-9);
@@ -202,53 +206,52 @@ TEST(BallAtFeature, PositionAndVelocityAgreeOverEveryKindOfFeature) {
   EXPECT_EQ(world.state().rescues, 0);
 }
 
-/// A handful of random features of random sizes on 4 m of pipe with a bend.
-void AddAny(BoreNetwork& line, std::uint64_t seed) {
-  const RandomStream stream(seed, "any", 0);
-  for (std::uint64_t i = 0; i < 5; ++i) {
-    const auto u = stream.Uniforms(i, 0);
-    const double s = 1 + 2 * u[0];
-    switch (static_cast<int>(5 * u[1])) {
-      case 0:
-        AddFeatures(line.bore, "weld_bead",
-                    {{"s_m", s}, {"height_m", 0.02 * u[2] + 1e-4}, {"width_m", 0.002 + 0.02 * u[3]}});
-        break;
-      case 1:
-        AddFeatures(line.bore, "gate_valve",
-                    {{"s_m", s}, {"opening_m", 0.02 + 0.12 * u[2]}, {"clock_rad", 6 * u[3]}});
-        break;
-      case 2:
-        AddFeatures(line.bore, "scale",
-                    {{"s_m", s}, {"length_m", 0.3}, {"cover", u[2]}, {"height_m", 0.01 * u[3]}}, kRadius,
-                    seed);
-        break;
-      case 3:
-        AddFeatures(line.bore, "service_hole",
-                    {{"s_m", 0.5 + u[0]}, {"diameter_m", 0.002 + 0.055 * u[2]}, {"clock_rad", 6 * u[3]}});
-        break;
-      default:
-        AddFeatures(line.bore, "joint",
-                    {{"s_m", 0.5 + u[0]}, {"gap_m", 0.055 * u[2]}, {"offset_m", 0.02 * u[3]}}, kRadius, seed);
-    }
+/// One of any kind between 0.5 and 3 m; it may lie over others.
+void AddAnyOne(BoreNetwork& line, std::uint64_t seed, const std::array<double, 4>& u) {
+  const double s = 1 + 2 * u[0], x = u[2], y = u[3];
+  switch (static_cast<int>(5 * u[1])) {
+    case 0:
+      return AddFeatures(line.bore, "weld_bead",
+                         {{"s_m", s}, {"height_m", 1e-3 + 0.02 * x}, {"width_m", 0.002 + 0.01 * y}});
+    case 1:
+      return AddFeatures(line.bore, "gate_valve",
+                         {{"s_m", s}, {"opening_m", 0.02 + 0.12 * x}, {"clock_rad", 6 * y}});
+    case 2:
+      return AddFeatures(line.bore, "scale",
+                         {{"s_m", s}, {"length_m", 0.3}, {"cover", 0.5 * x}, {"height_m", 0.003 + 0.01 * y}},
+                         kRadius, seed);
+    case 3:
+      return AddFeatures(line.bore, "service_hole",
+                         {{"s_m", 0.5 * s}, {"diameter_m", 0.002 + 0.055 * x}, {"clock_rad", 6 * y}});
+    default:
+      return AddFeatures(line.bore, "joint", {{"s_m", 0.5 * s}, {"gap_m", 0.055 * x}, {"offset_m", 0.02 * y}},
+                         kRadius, seed);
   }
 }
 
-TEST(BallAtFeature, NeverEscapesFromRandomFeatures) {
-  for (std::uint64_t seed = 0; seed < 100; ++seed) {
-    BoreNetwork line = MakeBoreLine({{0, 0, 0}, {2.4, 0, 0}, {2.4, 2.4, 0.3}}, {.bend_radius_m = 0.4});
-    AddAny(line, seed);
-    const auto u = RandomStream(seed, "start", 0).Uniforms(0, 0);
-    const Vector3d at(0.2, 0.04 * (u[0] - 0.5), -0.04 * u[1]), v(3 * u[2], u[3] - 0.5, 0);
-    BallWorld world(line.bore, Ball(0.4, 3e-4), Rate(1000), At(line.network, at, v), Carry);
-    for (int i = 0; i < 6000 && world.state().spot.s_m < 4; ++i) {
-      world.Step();
-      const Vector3d offset = world.state().X_LB.p - world.state().spot.axis.p_W;
-      ASSERT_TRUE(world.state().a_WB_W.allFinite()) << seed;
-      ASSERT_LT(offset.norm(), kBore) << seed;
-      ASSERT_LT(world.state().v_WB_W.norm(), 4) << seed;
-    }
-    EXPECT_EQ(world.state().rescues, 0) << seed;
+/// Five random features of random sizes on 4.5 m of pipe with a bend, and a ball thrown in.
+void ExpectNoEscape(std::uint64_t seed) {
+  BoreNetwork line = MakeBoreLine({{0, 0, 0}, {2.4, 0, 0}, {2.4, 2.4, 0.3}}, {.bend_radius_m = 0.4});
+  for (std::uint64_t i = 0; i < 5; ++i) AddAnyOne(line, seed, RandomStream(seed, "any", 0).Uniforms(i, 0));
+  const auto u = RandomStream(seed, "start", 0).Uniforms(0, 0);
+  const Vector3d at(0.2, 0.04 * (u[0] - 0.5), -0.04 * u[1]), v(3 * u[2], u[3] - 0.5, 0);
+  BallWorld world(line.bore, Ball(0.4, 3e-4), Rate(1000), At(line.network, at, v), Carry);
+  for (int i = 0; i < 5000 && world.state().spot.s_m < 4; ++i) {
+    world.Step();
+    const Vector3d offset = world.state().X_LB.p - world.state().spot.axis.p_W;
+    ASSERT_TRUE(world.state().a_WB_W.allFinite()) << seed;
+    ASSERT_LT(offset.norm(), kBore) << seed;
+    ASSERT_LT(world.state().v_WB_W.norm(), 4) << seed;
   }
+  EXPECT_EQ(world.state().rescues, 0) << seed;
+}
+
+TEST(BallAtFeature, NeverEscapesFromRandomFeatures) {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) ExpectNoEscape(seed);
+}
+
+TEST(BallAtFeature, NeverEscapesFromTwoThousandRandomFeaturesSlow) {
+  for (std::uint64_t seed = 40; seed < 440; ++seed) ExpectNoEscape(seed);
 }
 
 }  // namespace
