@@ -79,7 +79,9 @@ TEST(WallFeatureList, ARunWritesWhereItsFeaturesAre) {
   Scenario scenario = WithFeatures();
   scenario.estimators.clear();
   scenario.sensors.clear();
-  const RunResult result = Run(scenario, {.out = out / "run"});
+  RunOptions options;
+  options.out = out / "run";
+  const RunResult result = scenarios::Run(scenario, options);
   EXPECT_EQ(result.status, "ok");
   std::istringstream csv(ReadTextFile(out / "run" / "truth/features.csv"));
   std::string line;
@@ -98,7 +100,9 @@ TEST(WallFeatureList, AGateTooLowEndsTheRunWithABallThatIsStuck) {
                    {"mission.stuck_after_s=3"});
   scenario.estimators.clear();
   scenario.sensors.clear();
-  EXPECT_EQ(Run(scenario, {.out = out / "run"}).status, "ball_stuck");
+  RunOptions options;
+  options.out = out / "run";
+  EXPECT_EQ(scenarios::Run(scenario, options).status, "ball_stuck");
 }
 
 }  // namespace
