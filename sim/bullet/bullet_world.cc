@@ -1,7 +1,6 @@
 #include "sim/bullet/bullet_world.h"
 
-#include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
-
+#include <algorithm>
 #include <cmath>
 
 #include "base/check.h"
@@ -10,7 +9,7 @@
 namespace piperun::sim::bullet {
 namespace {
 
-constexpr int kMaxIterations = 60;  // only a ball coming to rest needs more than a handful
+constexpr double kMaxPush_m_s = 1;  // at which a rigid overlap is undone; along a wall there is none
 
 /// Bullet's headers follow BT_USE_DOUBLE_PRECISION, its libraries do not: the float ones link and start
 /// without an error. A function that lives in the library tells them apart.
@@ -44,47 +43,20 @@ BulletWorld::BulletWorld(const Bore& bore, const TubeBall& ball, const BallStart
     : wall_(bore),
       spot_(start.spot),
       radius_m_(ball.radius_m),
+      rigid_(!ball.compliance),
       configuration_(MakeConfiguration()),
       dispatcher_(&configuration_),
-      collision_(dispatcher_),
       broadphase_(4),
-      solver_(ball.radius_m, ball.rolling_length_m),
-      world_(&dispatcher_, &broadphase_, &solver_, &configuration_),
       sphere_shape_(ball.radius_m),
-      bore_shape_(ball.compliance),
-      ball_(BodyInfo(ball, sphere_shape_)) {
-  Configure(ball);
+      ball_(BodyInfo(ball, sphere_shape_)),
+      solver_(ball.radius_m, ball.rolling_length_m, 0),
+      world_(dispatcher_, broadphase_, solver_, configuration_, ball_, bore_) {
+  world_.SetMaterial(ball.friction, ball.compliance);
+  ball_.setFlags(0);  // gyroscopic torque is ours
   const Pose& X_FL = wall_.X_FL(spot_);
   ball_.setWorldTransform(btTransform(btQuaternion::getIdentity(), ToBullet(X_FL * start.X_LB.p)));
   ball_.setLinearVelocity(ToBullet(X_FL.q * start.v_WB_W));
   ball_.setAngularVelocity(ToBullet(X_FL.q * start.w_WB_W));
-}
-
-BulletWorld::~BulletWorld() {
-  world_.removeRigidBody(&ball_);
-  world_.removeCollisionObject(&bore_);
-}
-
-void BulletWorld::Configure(const TubeBall& ball) {
-  btContactSolverInfo& solver = world_.getSolverInfo();
-  solver.m_splitImpulse = 0;  // contacts act through velocities alone, so that IMU and trajectory agree
-  solver.m_erp2 = 1;
-  solver.m_numIterations = kMaxIterations;
-  solver.m_leastSquaresResidualThreshold = 1e-28;
-  solver.m_solverMode = SOLVER_USE_WARMSTARTING /* writes impulses back */ | SOLVER_USE_2_FRICTION_DIRECTIONS;
-  world_.getDispatchInfo().m_useContinuous = false;
-  world_.setGravity({0, 0, 0});
-  world_.setForceUpdateAllAabbs(false);
-  world_.getSimulationIslandManager()->setSplitIslands(false);
-
-  ball_.setActivationState(DISABLE_DEACTIVATION);
-  ball_.setDamping(0, 0);
-  ball_.setFlags(0);  // no gyroscopic torque on a sphere
-  ball_.setFriction(ball.friction);
-  world_.addRigidBody(&ball_);
-  bore_.setCollisionShape(&bore_shape_);
-  bore_.setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT);
-  world_.addCollisionObject(&bore_);
 }
 
 void BulletWorld::MoveTo(const SpotMove& move) {
@@ -108,9 +80,9 @@ void BulletWorld::Step(const Vector3d& dv_L, const Vector3d& dw_L, double dt_s) 
   ball_.setAngularVelocity(ball_.getAngularVelocity() + ToBullet(q_FL * dw_L));
   const WallContacts contacts = wall_.Probe(spot_, FromBullet(ball_.getWorldTransform().getOrigin()),
                                             FromBullet(ball_.getLinearVelocity()), radius_m_, dt_s);
-  bore_shape_.set_contacts(contacts);
   rescues_ += contacts.rescue ? 1 : 0;
-  world_.stepSimulation(dt_s, 0);
+  AddContacts(contacts, dt_s);
+  world_.stepSimulation(dt_s);
   ReadContacts();
 }
 
@@ -122,14 +94,18 @@ Vector3d BulletWorld::v_L() const { return wall_.X_LF(spot_).q * FromBullet(ball
 
 Vector3d BulletWorld::w_L() const { return wall_.X_LF(spot_).q * FromBullet(ball_.getAngularVelocity()); }
 
+void BulletWorld::AddContacts(const WallContacts& contacts, double dt_s) {
+  world_.ClearContacts();
+  for (const WallContact& contact : contacts) {
+    const btVector3 normal = ToBullet(contact.normal_F);
+    const double distance = rigid_ ? std::max(contact.gap_m, -kMaxPush_m_s * dt_s) : contact.gap_m;
+    world_.AddContact({normal, normal * -radius_m_, distance});
+  }
+}
+
 void BulletWorld::ReadContacts() {
   normal_impulse_N_s_ = 0;
-  for (int i = 0; i < dispatcher_.getNumManifolds(); ++i) {
-    const btPersistentManifold& manifold = *dispatcher_.getManifoldByIndexInternal(i);
-    for (int j = 0; j < manifold.getNumContacts(); ++j) {
-      normal_impulse_N_s_ += manifold.getContactPoint(j).getAppliedImpulse();
-    }
-  }
+  for (int i = 0; i < world_.contact_count(); ++i) normal_impulse_N_s_ += world_.NormalImpulse(i);
 }
 
 }  // namespace piperun::sim::bullet

@@ -5,8 +5,7 @@
 #include <cstdint>
 
 #include "sim/bore_wall.h"
-#include "sim/bullet/bore_collision.h"
-#include "sim/bullet/rolling_solver.h"
+#include "sim/bullet/tube_world.h"
 
 namespace piperun::sim::bullet {
 
@@ -19,7 +18,6 @@ class BulletWorld {
  public:
   /// Keeps a reference to the bore. Aborts when linked with Bullet in single precision.
   BulletWorld(const Bore& bore, const TubeBall& ball, const BallStart& start);
-  ~BulletWorld();
   BulletWorld(const BulletWorld&) = delete;
   BulletWorld& operator=(const BulletWorld&) = delete;
 
@@ -37,25 +35,24 @@ class BulletWorld {
   std::int64_t rescues() const { return rescues_; }
 
  private:
-  void Configure(const TubeBall& ball);
+  void AddContacts(const WallContacts& contacts, double dt_s);
   void ReadContacts();
 
   BoreWall wall_;
   NetworkSpot spot_;  // Bullet works in the frame of its piece
   double radius_m_;
+  bool rigid_;
   double normal_impulse_N_s_ = 0;
   std::int64_t rescues_ = 0;
 
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_;
-  BoreCollision collision_;
   btSimpleBroadphase broadphase_;
-  RollingSolver solver_;
-  btDiscreteDynamicsWorld world_;
   btSphereShape sphere_shape_;
-  BoreShape bore_shape_;
   btRigidBody ball_;
-  btCollisionObject bore_;
+  StaticWall bore_;
+  ContactSolver solver_;
+  TubeWorld world_;
 };
 
 }  // namespace piperun::sim::bullet
