@@ -2,7 +2,54 @@
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <cmath>
+
 namespace piperun::sim::bullet {
+namespace {
+
+bool IsIsotropic(const btVector3& inverse_inertia) {
+  return inverse_inertia.x() == inverse_inertia.y() && inverse_inertia.x() == inverse_inertia.z();
+}
+
+/// Change of w by an angular impulse.
+btVector3 CalcRate(const btRigidBody& body, const btVector3& impulse) {
+  const btVector3& local = body.getInvInertiaDiagLocal();
+  return IsIsotropic(local) ? impulse * local.x() : body.getInvInertiaTensorWorld() * impulse;
+}
+
+/// Inverse inertia of a body for turning across a normal n: B = T^T I^-1 T, T two axes across n.
+class CrossInertia {
+ public:
+  CrossInertia(const btRigidBody& body, const btVector3& n) : body_(body) {
+    const btVector3& local = body.getInvInertiaDiagLocal();
+    isotropic_ = IsIsotropic(local);
+    most_ = local.x();
+    if (isotropic_) return;
+    btPlaneSpace1(n, t1_, t2_);
+    const btVector3 a1 = CalcRate(body, t1_), a2 = CalcRate(body, t2_);
+    b11_ = t1_.dot(a1), b12_ = t1_.dot(a2), b22_ = t2_.dot(a2);
+    most_ = 0.5 * (b11_ + b22_ + std::hypot(b11_ - b22_, 2 * b12_));
+  }
+
+  /// Largest eigenvalue of B.
+  btScalar most() const { return most_; }
+  /// The impulse q across n with B q = w_t.
+  btVector3 Stopping(const btVector3& w_t) const {
+    if (isotropic_) return w_t / most_;
+    const btScalar w1 = t1_.dot(w_t), w2 = t2_.dot(w_t), det = b11_ * b22_ - b12_ * b12_;
+    return t1_ * ((b22_ * w1 - b12_ * w2) / det) + t2_ * ((b11_ * w2 - b12_ * w1) / det);
+  }
+  btVector3 RateOf(const btVector3& impulse) const { return CalcRate(body_, impulse); }
+
+ private:
+  const btRigidBody& body_;
+  bool isotropic_;
+  btScalar most_;
+  btVector3 t1_, t2_;
+  btScalar b11_ = 0, b12_ = 0, b22_ = 0;
+};
+
+}  // namespace
 
 btScalar ContactSolver::solveGroup(btCollisionObject** bodies, int body_count,
                                    btPersistentManifold** manifolds, int manifold_count, btTypedConstraint**,
@@ -70,23 +117,39 @@ btScalar ContactSolver::Resist(const btSolverConstraint& contact, Resistance& gi
   return residual;
 }
 
-/// Gives the impulse that would stop the rolling, no longer than allowed.
+/// Gives the impulse that would stop the rolling; where that is more than allowed, all that is allowed,
+/// against the rolling. Stopping takes the whole inertia; a direction against w_t is found by steps of the
+/// gradient.
 btScalar ContactSolver::ResistRolling(const btSolverConstraint& contact, btVector3& impulse) {
   btSolverBody& body = BodyOf(contact);
-  const btScalar inverse_inertia =
-      body.m_originalBody->getInvInertiaDiagLocal().x();  // a sphere's, isotropic
   const btVector3& n = contact.m_contactNormal1;
   const btVector3 w = body.m_angularVelocity + body.internalGetDeltaAngularVelocity();
+  const btVector3 w_t = w - n * n.dot(w);
   const btScalar limit = rolling_length_ * contact.m_appliedImpulse;
-  btVector3 wanted = impulse - (w - n * n.dot(w)) / inverse_inertia;
-  const btScalar length = wanted.length();
-  if (length > limit) wanted *= limit / length;
-  const btVector3 change = (wanted - impulse) * inverse_inertia;
+  const CrossInertia inertia(*body.m_originalBody, n);
+  btVector3 wanted = impulse - inertia.Stopping(w_t);
+  if (wanted.length2() > limit * limit) {
+    wanted = impulse - w_t / inertia.most();
+    const btScalar length = wanted.length();
+    if (length > limit) wanted *= limit / length;
+  }
+  const btVector3 change = inertia.RateOf(wanted - impulse);
   impulse = wanted;
   body.internalGetDeltaAngularVelocity() += change;
   return change.length2() * radius_ * radius_;
 }
 
-btScalar ContactSolver::ResistSpinning(const btSolverConstraint&, btScalar&) { return 0; }
+btScalar ContactSolver::ResistSpinning(const btSolverConstraint& contact, btScalar& impulse) {
+  btSolverBody& body = BodyOf(contact);
+  const btVector3& n = contact.m_contactNormal1;
+  const btVector3 rate = CalcRate(*body.m_originalBody, n);
+  const btScalar w_n = n.dot(body.m_angularVelocity + body.internalGetDeltaAngularVelocity());
+  const btScalar limit = spinning_length_ * contact.m_appliedImpulse;
+  const btScalar wanted = btClamped(impulse - w_n / n.dot(rate), -limit, limit);
+  const btVector3 change = rate * (wanted - impulse);
+  impulse = wanted;
+  body.internalGetDeltaAngularVelocity() += change;
+  return change.length2() * radius_ * radius_;
+}
 
 }  // namespace piperun::sim::bullet
