@@ -312,7 +312,8 @@ WallContacts BoreWall::ProbeTube(const NetworkSpot& spot, const Vector3d& p_F, c
   const Vector3d step_F = (v_F - v_n * normal_F) * dt_s;
   const Landing to = Land(spot, p_F, step_F, normal_F);
   const double gap_m = wall(to.spot).radius_m - radius_m - CalcOffset(FindPiece(to.spot), to.p_F).norm();
-  if (gap_m + v_n * dt_s < kContactRange_m) contacts.Add({normal_F, gap_m});
+  const double present_gap_m = wall(spot).radius_m - radius_m - offset.norm();
+  if (gap_m + v_n * dt_s < kContactRange_m) contacts.Add({normal_F, gap_m, -1, present_gap_m});
   contacts.rescue = offset.norm() > wall(spot).radius_m;
   return contacts;
 }
@@ -328,7 +329,9 @@ WallContacts BoreWall::Probe(const NetworkSpot& spot, const Vector3d& p_F, const
     const double v_n = v_F.dot(foot.normal);
     const Vector3d step_F = (v_F - v_n * foot.normal) * dt_s;
     const double gap_m = PredictDistance(spot, p_F, foot, step_F) - radius_m;
-    if (gap_m + v_n * dt_s < kContactRange_m) contacts.Add({foot.normal, gap_m, foot.feature});
+    if (gap_m + v_n * dt_s < kContactRange_m) {
+      contacts.Add({foot.normal, gap_m, foot.feature, foot.distance_m - radius_m});
+    }
   }
   return contacts;
 }

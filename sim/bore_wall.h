@@ -16,6 +16,7 @@ struct WallContact {
   Vector3d normal_F;  ///< unit, from the wall to the sphere
   double gap_m = 0;   ///< between the sphere and the wall where the sphere is about to be; negative: overlap
   int feature = -1;   ///< as in WallFoot
+  double present_gap_m = 0;  ///< where the sphere is now
 };
 
 /// The contacts of one step: the few with the smallest gaps.

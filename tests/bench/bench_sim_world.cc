@@ -9,7 +9,7 @@
 namespace piperun::sim {
 namespace {
 
-constexpr TubeBall kBall{0.03, 0.181, 4.5e-5, 0.5, 3e-4};
+const TubeBall kBall{0.03, 0.181, 4.5e-5, 0.5, 3e-4};
 constexpr double kWeight_N = 0.11, kRun_m = 0.045;
 
 BallStart At(const Network& network, int pipe, const Vector3d& p_L, const Vector3d& v_L) {
