@@ -49,6 +49,9 @@ void WriteLeak(OutputFile& file, const TrueLeak& leak) {
                << leak.p_W << leak.flow_m3_s << leak.t_cpa_ns << leak.snr_dB << kEndOfRow;
 }
 
+/// Of the wall features, by index.
+std::vector<std::string> FeatureIds(const Assembly&) { return {}; }
+
 }  // namespace
 
 TruthRecorder::TruthRecorder(const Assembly& assembly, Rate truth_rate,
@@ -62,6 +65,12 @@ TruthRecorder::TruthRecorder(const Assembly& assembly, Rate truth_rate,
       approaches_(assembly.pipeline ? assembly.pipeline->leaks.size() : 0) {
   ball_.Append(kBallHeader);
   groundtruth_.Append(kGroundtruthHeader);
+  if (assembly.motion->way())
+    contacts_.emplace(truth_folder / "contacts.csv", *assembly.network(), FeatureIds(assembly));
+}
+
+std::optional<ContactSummary> TruthRecorder::contacts() const {
+  return contacts_ ? std::optional(contacts_->summary()) : std::nullopt;
 }
 
 void TruthRecorder::Record(const sim::TruthWindow& window) {
@@ -71,6 +80,7 @@ void TruthRecorder::Record(const sim::TruthWindow& window) {
     WriteRow(sim::Interpolate(window, due));
   }
   for (std::size_t i = 0; i < approaches_.size(); ++i) UpdateApproach(i, window);
+  if (contacts_) contacts_->WriteUntil(window.latest_time());
 }
 
 void TruthRecorder::WriteRow(const sim::TruthState& state) {
@@ -117,6 +127,7 @@ TruthRecorder::LeakPlace TruthRecorder::FindPlace(const Leak& leak) const {
 std::vector<TrueLeak> TruthRecorder::Close(const acoustics::HydrophoneParams* hydrophone) {
   ball_.Close();
   groundtruth_.Close();
+  if (contacts_) contacts_->Close();
   OutputFile file(truth_folder_ / "leaks.csv");
   file.Append(kLeaksHeader);
   std::vector<TrueLeak> leaks;

@@ -5,14 +5,15 @@
 #include <vector>
 
 #include "scenarios/assemble.h"
+#include "scenarios/contact_log.h"
 #include "scenarios/output_file.h"
 #include "scenarios/score.h"
 #include "sim/truth.h"
 
 namespace piperun::scenarios {
 
-/// Writes truth/ball.csv and EuRoC's state_groundtruth_estimate0, and watches for the closest approach to
-/// every leak.
+/// Writes truth/ball.csv, truth/contacts.csv and EuRoC's state_groundtruth_estimate0, and watches for the
+/// closest approach to every leak.
 class TruthRecorder {
  public:
   TruthRecorder(const Assembly& assembly, Rate truth_rate, const std::filesystem::path& truth_folder,
@@ -20,6 +21,9 @@ class TruthRecorder {
 
   /// Call after every push into the window.
   void Record(const sim::TruthWindow& window);
+  void Record(const sim::ContactEvent& event) { contacts_->Add(event); }
+  /// Of the rows written so far; nothing: no pipes.
+  std::optional<ContactSummary> contacts() const;
   /// Completes the files, writes leaks.csv and returns what it says.
   std::vector<TrueLeak> Close(const acoustics::HydrophoneParams* hydrophone);
 
@@ -38,6 +42,7 @@ class TruthRecorder {
   std::filesystem::path truth_folder_;
   OutputFile ball_;
   OutputFile groundtruth_;
+  std::optional<ContactLog> contacts_;  ///< when there are pipes
   std::int64_t next_row_ = 0;
   std::vector<std::optional<sim::TruthState>> approaches_;  ///< closest step to each leak so far
 };
