@@ -107,7 +107,8 @@ class RunLoop {
       Tell(motion.contact_events());
       Push(motion.state());
     }
-    DeliverUntil(window_.latest_time() - lookahead_);  // no collision can be told any more
+    Deliver(Duration(0));  // no collision can be told any more
+    truth_.WriteUntil(window_.latest_time(), window_);
   }
 
   RunResult Finish() {
@@ -132,9 +133,15 @@ class RunLoop {
 
   void Push(const sim::TruthState& state) {
     window_.Push(state);
-    truth_.Record(window_);
-    DeliverUntil(window_.latest_time() - lookahead_ - contact_delay_);
+    truth_.Watch(window_);
+    Deliver(contact_delay_);
     if (window_.last() % 1024 == 0) Report(state);
+  }
+
+  void Deliver(Duration contact_delay) {
+    const TrueTime horizon = window_.latest_time() - lookahead_ - contact_delay;
+    DeliverUntil(horizon);
+    truth_.WriteUntil(horizon, window_);
   }
 
   /// All measurements complete by `horizon`, by time and then channel name.

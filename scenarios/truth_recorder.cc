@@ -73,14 +73,17 @@ std::optional<ContactSummary> TruthRecorder::contacts() const {
   return contacts_ ? std::optional(contacts_->summary()) : std::nullopt;
 }
 
-void TruthRecorder::Record(const sim::TruthWindow& window) {
-  for (;; ++next_row_) {
-    const TrueTime due = SampleTime(next_row_, truth_rate_);
-    if (due > window.latest_time()) break;
-    WriteRow(sim::Interpolate(window, due));
-  }
+void TruthRecorder::Watch(const sim::TruthWindow& window) {
   for (std::size_t i = 0; i < approaches_.size(); ++i) UpdateApproach(i, window);
   if (contacts_) contacts_->WriteUntil(window.latest_time());
+}
+
+void TruthRecorder::WriteUntil(TrueTime horizon, const sim::TruthWindow& window) {
+  for (;; ++next_row_) {
+    const TrueTime due = SampleTime(next_row_, truth_rate_);
+    if (due > horizon) return;
+    WriteRow(sim::Interpolate(window, due));
+  }
 }
 
 void TruthRecorder::WriteRow(const sim::TruthState& state) {

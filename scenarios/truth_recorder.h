@@ -20,7 +20,10 @@ class TruthRecorder {
                 const std::filesystem::path& groundtruth_folder);
 
   /// Call after every push into the window.
-  void Record(const sim::TruthWindow& window);
+  void Watch(const sim::TruthWindow& window);
+  /// Writes the rows up to `horizon`. Call when the inertial sensor has been sampled up to there: the biases
+  /// in a row are those of its last sample.
+  void WriteUntil(TrueTime horizon, const sim::TruthWindow& window);
   void Record(const sim::ContactEvent& event) { contacts_->Add(event); }
   /// Of the rows written so far; nothing: no pipes.
   std::optional<ContactSummary> contacts() const;
