@@ -128,6 +128,10 @@ RunResult LoadRunSummary(const std::string& text) {
     result.route_pipes = json.at("route").at("pipes").get<std::vector<std::string>>();
     result.planned_pipes = json.at("route").at("planned").get<std::vector<std::string>>();
     result.notes = json.at("notes").get<std::vector<std::string>>();
+    if (const Json::json_pointer contacts("/truth/contacts"); json.contains(contacts)) {
+      result.contacts = {json.at(contacts).at("count").get<std::int64_t>(),
+                         json.at(contacts).at("largest_impulse_N_s").get<double>()};
+    }
     return result;
   } catch (const Json::exception& e) {
     throw InputError(std::string("this is not the run.json of a run: ") + e.what(), "", "run.json");
