@@ -10,7 +10,7 @@ namespace piperun::acoustics {
 /// calibrated record). 20 Pa/(N s) makes that of 0.02 N s within 1 ms.
 struct ImpactParams {
   bool on = true;
-  double contact_time_s = 0.001;  ///< of a rigid blow (Hertz): hard plastic on plastic 1 ms, steel 0.3 ms
+  double contact_time_s = 0.001;  ///< of a rigid blow (Hertz): hard plastic 1 ms, steel on steel 0.2 ms
   double ring_Pa_per_N_s = 20;    ///< rms pressure at the beginning of the ring over the impulse of the blow
   double ring_low_Hz = 1000;      ///< the ring's band
   double ring_high_Hz = 4000;
