@@ -4,9 +4,11 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "scenarios/contact_log.h"
 #include "scenarios/scenario.h"
 #include "scenarios/score.h"
 
@@ -41,6 +43,7 @@ struct RunResult {
   std::vector<std::string> planned_pipes;
   std::vector<std::string> notes;  ///< what was assumed where the input is silent
   std::vector<TrueLeak> leaks;
+  std::optional<ContactSummary> contacts;  ///< nothing: no pipes
   std::vector<EstimatorResult> estimators;
   std::map<std::string, std::string> file_hashes;  ///< SHA-256 by path in the folder
   std::string json;                                ///< run.json, to the byte

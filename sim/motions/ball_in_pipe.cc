@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "sim/ball_mass.h"
 #include "sim/ball_world.h"
+#include "sim/contact_events.h"
 #include "sim/downstream.h"
 #include "sim/fluid_load.h"
 #include "sim/force_params.h"
@@ -22,11 +23,15 @@ constexpr double kTouching_m = 1e-6;  // far above rounding, far below anything 
 
 struct BallInPipeParams : ParamsOf<BallInPipeParams> {
   double rate_Hz = 1000;
+  double contact_event_speed_m_s = 0.01;
   ForceParams forces;
   StreamParams stream;
 
   void Visit(ParamVisitor& v) override {
     v.Number({"rate_Hz", "Steps of the physics per second."}, Range::Between(100, 10000), rate_Hz);
+    v.Number({"contact_event_speed_m_s",
+              "Closing speed above which a contact is a collision; what carries the ball comes on top."},
+             Range::Between(1e-4, 10), contact_event_speed_m_s);
     v.Struct({"forces", "Which laws act on the ball."}, forces);
     v.Struct({"stream", "The flow in a pipe beyond its bulk speed."}, stream);
   }
@@ -90,7 +95,8 @@ class BallInPipe : public Motion {
                       CalcResponse(context.ball, coefficients_), context.water.kinematic_viscosity_m2_s),
         world_(*context.bore, MakeTubeBall(ApplyForces(context.ball, params.forces), coefficients_), rate_,
                MakeLaunch(context, context.lateral_sd_m),
-               [this](const BallInstant& ball) { return EvalLoad(ball); }) {
+               [this](const BallInstant& ball) { return load_ = EvalLoad(ball); }),
+        contact_events_(context.ball.radius_m, InertialMass_kg(), params.contact_event_speed_m_s) {
     Publish();
     progress_m_ = state_.chainage_m;
   }
@@ -100,6 +106,7 @@ class BallInPipe : public Motion {
   MotionStatus status() const override { return status_; }
   Vector3d planned_start_W() const override { return MakeLaunch(context_, 0).X_LB.p; }
   const Way* way() const override { return &way_; }
+  std::span<const ContactEvent> contact_events() const override { return contact_events_.ended(); }
 
   std::vector<std::string> notes() const override {
     std::vector<std::string> notes = ranges_.Sentences();
@@ -120,6 +127,7 @@ class BallInPipe : public Motion {
     world_.Step();
     if (world_.state().crossing) way_.Cross(*world_.state().crossing);
     Publish();
+    DetectContactEvents();
     UpdateStatus();
   }
 
@@ -132,10 +140,9 @@ class BallInPipe : public Motion {
     FluidLoad load = CalcFluidLoad(coefficients_, ball.v_WB_W, ball.w_WB_W, water_);
     ranges_.Feed(load.numbers, water_);
     const double slip_m_s = (water_.velocity_W - ball.v_WB_W).norm();
-    const double inertia_kg = context_.ball.mass_kg() + coefficients_.added_mass_kg;
     if (slip_m_s > 0) {
       const double share =
-          CalcResolvedShare(2 * load.drag_W_N.norm() * rate_.Period_s() / (inertia_kg * slip_m_s));
+          CalcResolvedShare(2 * load.drag_W_N.norm() * rate_.Period_s() / (InertialMass_kg() * slip_m_s));
       load.drag_W_N *= share;
       if (share < 1) ++held_back_;
     }
@@ -146,6 +153,17 @@ class BallInPipe : public Motion {
   Vector3d CalcWeightTorque_W_N_m(const Quaterniond& q_WB) const {
     const Vector3d p_BC_W = q_WB * context_.ball.center_of_mass_B_m;
     return p_BC_W.cross(context_.ball.mass_kg() * context_.gravity_W);
+  }
+
+  double InertialMass_kg() const { return context_.ball.mass_kg() + coefficients_.added_mass_kg; }
+
+  void DetectContactEvents() {
+    const BallState& ball = world_.state();
+    const double carried_N = CalcCarriedForce_N(load_.force_W_N.norm(), InertialMass_kg(), ball.spot.axis,
+                                                ball.X_LB.p, ball.v_WB_W);
+    contact_events_.Step(
+        {ball.time, rate_.Period_s(), carried_N, {state_.X_WB.p, state_.pipe, state_.s_m, state_.chainage_m}},
+        ball.contacts);
   }
 
   const Pipe& PipeOf(const NetworkSpot& spot) const { return context_.network->pipe(spot.pipe); }
@@ -234,7 +252,9 @@ class BallInPipe : public Motion {
   WaterAtBall water_;  // where and when the world evaluated the loads last: at its present state
   bool too_large_ = false;
   std::int64_t held_back_ = 0;  // steps whose drag was more than they can follow
+  BallLoad load_;               // what the world was given last
   BallWorld world_;
+  ContactEventDetector contact_events_;
   TruthState state_;
   MotionStatus status_ = MotionStatus::kRunning;
   double progress_m_ = 0;  // farthest chainage that counted as progress, and when it was reached
