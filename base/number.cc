@@ -1,12 +1,25 @@
 #include "base/number.h"
 
 #include <cmath>
+#include <cstdio>
 
 namespace piperun {
 
 std::string FormatNumber(double value) {
   std::string text;
   AppendNumber(text, value);
+  return text;
+}
+
+std::string FormatDigits(double value, int digits) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
+}
+
+std::string FormatFixed(double value, int decimals) {
+  char text[400];  // the largest double has 309 digits before the point
+  std::snprintf(text, sizeof text, "%.*f", decimals, value);
   return text;
 }
 

@@ -10,6 +10,10 @@ namespace piperun {
 /// Shortest decimal text that reads back as exactly this value (at most 17 significant digits).
 std::string FormatNumber(double value);
 
+/// For people to read: `digits` significant ones, as printf's %g; `decimals` behind the point, as its %f.
+std::string FormatDigits(double value, int digits);
+std::string FormatFixed(double value, int decimals);
+
 /// The double written in `text`, or nothing when `text` is not a number from end to end. Accepts a leading
 /// '+', decimal and scientific notation; refuses hexadecimal, "inf" and "nan" in any spelling.
 std::optional<double> ParseNumber(std::string_view text);

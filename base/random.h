@@ -26,6 +26,9 @@ class RandomStream {
   std::array<double, 4> Uniforms(std::uint64_t sample, std::uint64_t slot) const;
   /// Standard normal by Box and Muller (Ann. Math. Stat. 29, 610, 1958); |x| <= sqrt(106 ln 2) = 8.57.
   std::array<double, 4> Normals(std::uint64_t sample, std::uint64_t slot) const;
+  /// Six for less than the price of four, the same way from 32 bits each: |x| <= sqrt(66 ln 2) = 6.76, which
+  /// a normal exceeds once in 7e10 draws. Not the numbers of Normals().
+  std::array<double, 6> SixNormals(std::uint64_t sample, std::uint64_t slot) const;
 
  private:
   std::array<std::uint64_t, 2> key_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "base/check.h"
@@ -129,13 +128,6 @@ double Quantile(const std::vector<double>& sorted, double share) {
   return std::lerp(sorted[i], next, place - static_cast<double>(i));
 }
 
-/// A number for people: four significant digits.
-std::string Rounded(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.4g", value);
-  return text;
-}
-
 double FitMapUnit_m(const std::vector<double>& units_m, const HydraulicModel& model,
                     std::vector<std::string>& notes) {
   if (units_m.empty()) {
@@ -144,10 +136,10 @@ double FitMapUnit_m(const std::vector<double>& units_m, const HydraulicModel& mo
   }
   const double median_m = Quantile(units_m, 0.5);
   const double low = Quantile(units_m, 0.05) / median_m, high = Quantile(units_m, 0.95) / median_m;
-  notes.push_back("a unit of the map is taken as " + Rounded(median_m) +
+  notes.push_back("a unit of the map is taken as " + FormatDigits(median_m, 4) +
                   " m: the median of stated over drawn length of " + std::to_string(units_m.size()) +
-                  " pipes; nine in ten of them lie between " + Rounded(low) + " and " + Rounded(high) +
-                  " times that (map_unit_m sets it)");
+                  " pipes; nine in ten of them lie between " + FormatDigits(low, 4) + " and " +
+                  FormatDigits(high, 4) + " times that (map_unit_m sets it)");
   return median_m;
 }
 

@@ -16,8 +16,11 @@ std::string WriteReproduceJson(const Reproduction& reproduction, const Reproduce
     tables.push_back({{"title", table.title}, {"head", table.head}, {"rows", table.rows}});
   }
   for (const ReproducedFigure& f : report.figures) {
-    figures.push_back(
-        {{"what", f.what}, {"measured", f.measured}, {"expected", f.expected}, {"passed", f.passed}});
+    figures.push_back({{"what", f.what},
+                       {"measured", f.measured},
+                       {"expected", f.expected},
+                       {"source", f.source},
+                       {"passed", f.passed}});
   }
   const Json json{{"schema", "piperun.reproduce/1"},
                   {"name", reproduction.name},

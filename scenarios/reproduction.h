@@ -23,6 +23,7 @@ struct ReproducedFigure {
   std::string measured;
   std::string expected;
   bool passed = false;
+  std::string source{};  ///< of what is expected; may be empty
 };
 
 struct ReproducedTable {

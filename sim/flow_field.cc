@@ -37,6 +37,7 @@ struct FlowField::Site {
   const PipeZones& zones;
   std::size_t reach = 0;  ///< of the timeline
   TrueTime time{};
+  Swirl swirl{};
   FlowPoint flow{};                    ///< of the reach
   Vector3d offset = Vector3d::Zero();  ///< from the axis to the ball's centre
   double offset_m = 0;
@@ -48,13 +49,15 @@ struct FlowField::Site {
 };
 
 FlowField::FlowField(const Bore& bore, const FlowTimeline& flow, const WaterProperties& water,
-                     double gravity_m_s2, double ball_radius_m, ProfileLaw profile)
+                     double gravity_m_s2, double ball_radius_m, const StreamParams& stream)
     : bore_(bore),
       flow_(flow),
       water_(water),
       gravity_m_s2_(gravity_m_s2),
       ball_radius_m_(ball_radius_m),
-      profile_(profile),
+      cross_flow_(stream.secondary_flow || stream.swirl_switching),
+      secondary_(bore, stream.secondary_flow ? stream.secondary_flow_amplitude : 0),
+      profile_(FindProfileLaw(stream.profile)),
       pipe_tables_(bore.network().pipes().size()),
       junctions_(bore.network().nodes().size()) {
   for (std::size_t p = 0; p < pipe_tables_.size(); ++p) zones_.push_back(MakeZones(static_cast<int>(p)));
@@ -83,10 +86,12 @@ FlowField::PipeZones FlowField::MakeZones(int pipe) const {
   return zones;
 }
 
-FlowField::Site FlowField::MakeSite(const NetworkSpot& spot, const Vector3d& p_L, TrueTime t) const {
+FlowField::Site FlowField::MakeSite(const NetworkSpot& spot, const Vector3d& p_L, TrueTime t,
+                                    const Swirl& swirl) const {
   Site site{spot, bore_.network().pipe(spot.pipe), zones_[static_cast<std::size_t>(spot.pipe)]};
   site.reach = flow_.FindReach(spot.pipe, spot.s_m);
   site.time = t;
+  site.swirl = swirl;
   site.flow = flow_.EvalReach(spot.pipe, site.reach, spot.s_m, t);
   site.offset = p_L - spot.axis.p_W;
   site.offset_m = site.offset.norm();
@@ -95,8 +100,9 @@ FlowField::Site FlowField::MakeSite(const NetworkSpot& spot, const Vector3d& p_L
   return site;
 }
 
-WaterAtBall FlowField::Eval(const NetworkSpot& spot, const Vector3d& p_L, TrueTime t) const {
-  const Site site = MakeSite(spot, p_L, t);
+WaterAtBall FlowField::Eval(const NetworkSpot& spot, const Vector3d& p_L, TrueTime t,
+                            const Swirl& swirl) const {
+  const Site site = MakeSite(spot, p_L, t, swirl);
   WaterAtBall water = EvalMean(site);
   FillSurroundings(site, water);
   return water;
@@ -202,6 +208,10 @@ WaterAtBall FlowField::EvalDeveloped(const Site& site) const {
   water.bore_radius_m = radius_m;
   water.pressure_Pa = water_.density_kg_m3 * gravity_m_s2_ * (site.flow.head_m - site.z_m);
   AddFriction(site, 1, water);
+  AxialFlow main;
+  main.axial_m_s = bulk * mean.velocity;
+  main.d_axial_dr_1_s = bulk * mean.gradient / radius_m;
+  AddCrossFlow(site, {site.flow.flow_m3_s, 0, 0}, {1, 0, 0}, main, water);
   return water;
 }
 
@@ -299,7 +309,35 @@ WaterAtBall FlowField::EvalShaped(const Site& site, const Jet& flow, const Jet& 
   water.bore_radius_m = radius_m;
   water.pressure_Pa = water_.density_kg_m3 * gravity_m_s2_ * (site.flow.head_m - site.z_m);
   AddFriction(site, 1, water);
+  AddCrossFlow(site, flow, share, axial, water);
   return water;
+}
+
+CrossSpeed FlowField::CalcCrossSpeed(const Site& site, const Jet& bulk) const {
+  const CrossGrowth growth = secondary_.Eval(site.spot, bulk.value < 0);
+  const CrossStrength &strength = growth.strength, &slope = growth.slope_1_m;
+  const double speed = std::abs(bulk.value), change = bulk.value < 0 ? -bulk.d1 : bulk.d1;
+  const double swirl = kSwirlSpeed * site.swirl.s;
+  return {speed * strength.cells_W, change * strength.cells_W + speed * slope.cells_W,
+          swirl * speed * strength.swirl, swirl * (change * strength.swirl + speed * slope.swirl),
+          kSwirlSpeed * site.swirl.ds_dt_1_s * speed * strength.swirl};
+}
+
+void FlowField::AddCrossFlow(const Site& site, const Jet& flow, const Jet& share, const AxialFlow& main,
+                             WaterAtBall& water) const {
+  if (!cross_flow_ || flow.value == 0 || share.value == 0) return;
+  const Jet radius = CalcRadius(site.pipe, site.spot.s_m);
+  const Jet bulk = share * (1 / pi * flow) * Inverse(radius * radius);
+  const CrossSpeed speed = CalcCrossSpeed(site, bulk);
+  if (!speed.Matters()) return;
+  const CentrelinePoint& axis = site.spot.axis;
+  const CrossPlace place{axis.tangent_W, axis.curvature_W, site.offset,
+                         radius.value,   radius.d1,        ball_radius_m_};
+  const CrossAddition addition =
+      CalcCrossAddition(place, speed, main, water.velocity_W, site.flow.dflow_dt_m3_s2 / flow.value);
+  water.velocity_W += addition.velocity_W;
+  water.acceleration_W += addition.acceleration_W;
+  water.spin_W += addition.spin_W;
 }
 
 FlowField::Junction& FlowField::FindOrMakeJunction(int node) const {

@@ -6,10 +6,14 @@
 
 #include "base/water.h"
 #include "sim/axial_flow.h"
+#include "sim/cross_flow.h"
 #include "sim/flow_timeline.h"
+#include "sim/force_params.h"
 #include "sim/junction_flow.h"
 #include "sim/network_spot.h"
 #include "sim/pipe_flow.h"
+#include "sim/secondary_flow.h"
+#include "sim/swirl.h"
 
 namespace piperun::sim {
 
@@ -50,17 +54,22 @@ struct WaterAtBall {
 ///   are shared by their joints half and half. Nodes with one pipe, and joints with nearly parallel arms
 ///   (JunctionFlow::Covers), have no joint flow: the pipe's flow goes up to the node.
 ///
-/// Left out: secondary flow, separation, turbulence, velocity heads (as by the hydraulics).
+/// In bends and behind them a flow across the pipe comes on top (sim/secondary_flow.h); Du/Dt and curl are
+/// those of the sum. Not in joints, which potential flow passes without; towards them it fades with the
+/// profile.
+///
+/// Left out: separation, turbulence (sim/turbulence.h adds it), velocity heads (as by the hydraulics).
 class FlowField {
  public:
   /// References are kept. Where flow passes the ball must fit: d/D <= 0.95 (aborts on a spot in a bore
   /// that is tighter).
   FlowField(const Bore& bore, const FlowTimeline& flow, const WaterProperties& water, double gravity_m_s2,
-            double ball_radius_m, ProfileLaw profile = ProfileLaw::kPowerLaw);
+            double ball_radius_m, const StreamParams& stream = {});
 
-  /// Flow at `spot` for a ball centred at p_L, in the drawing of the spot's pipe. Bores and joints are worked
+  /// Flow at `spot` for a ball centred at p_L, in the drawing of the spot's pipe. `swirl` turns the single
+  /// cell behind bends; by default there is none. Bores and joints are worked
   /// out when they are met first (1 ms and 20 to 400 ms); nothing else allocates. Not for several threads.
-  WaterAtBall Eval(const NetworkSpot& spot, const Vector3d& p_L, TrueTime t) const;
+  WaterAtBall Eval(const NetworkSpot& spot, const Vector3d& p_L, TrueTime t, const Swirl& swirl = {}) const;
 
   /// The flow of the joint at a node, or null where there is none; for reports.
   const JunctionFlow* FindJunction(int node) const;
@@ -90,7 +99,7 @@ class FlowField {
 
   PipeZones MakeZones(int pipe) const;
   bool HasJunction(const Joint& joint) const;
-  Site MakeSite(const NetworkSpot& spot, const Vector3d& p_L, TrueTime t) const;
+  Site MakeSite(const NetworkSpot& spot, const Vector3d& p_L, TrueTime t, const Swirl& swirl) const;
   Jet CalcFlow(const Site& site) const;
   double FlowBeyond(const Site& site, bool at_to) const;
   Jet CalcProfileShare(const Site& site) const;
@@ -102,6 +111,10 @@ class FlowField {
   WaterAtBall EvalJunction(const Site& site, bool at_to) const;
   void SetOutflows(const Joint& joint, TrueTime t, Junction& junction) const;
   void FillJunctionScalars(const Site& site, bool at_to, double outflow_m3_s, WaterAtBall& water) const;
+  /// Adds the flow across the pipe to the flow along it.
+  void AddCrossFlow(const Site& site, const Jet& flow, const Jet& share, const AxialFlow& main,
+                    WaterAtBall& water) const;
+  CrossSpeed CalcCrossSpeed(const Site& site, const Jet& bulk) const;
   void FillSurroundings(const Site& site, WaterAtBall& water) const;
   void AddFriction(const Site& site, double share, WaterAtBall& water) const;
 
@@ -115,6 +128,8 @@ class FlowField {
   WaterProperties water_;
   double gravity_m_s2_;
   double ball_radius_m_;
+  bool cross_flow_;
+  SecondaryFlow secondary_;
   ProfileLaw profile_;
   std::vector<PipeZones> zones_;                                     // per pipe
   mutable std::map<double, std::unique_ptr<DiscMeanTable>> tables_;  // by bore radius

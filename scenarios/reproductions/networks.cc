@@ -24,12 +24,6 @@ constexpr double kOverlap_m = 2e-5;  // (v dt)^2 / (2 r): by so much a step of 1
 
 int Sized(int runs, double size) { return std::max(1, static_cast<int>(std::lround(runs * size))); }
 
-std::string Fixed(double value, int decimals) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
-}
-
 /// How one ball fared.
 struct Fate {
   std::string outcome;
@@ -117,7 +111,8 @@ void StudyEscapes(const ReproduceOptions& options, ReproduceReport& report) {
     joints += fate.joints_passed;
   }
   ReproducedTable table{"Balls in " + std::to_string(count) + " random networks, up to 60 s each (" +
-                            Fixed(time_s / 3600, 2) + " h, " + std::to_string(joints) + " joints passed)",
+                            FormatFixed(time_s / 3600, 2) + " h, " + std::to_string(joints) +
+                            " joints passed)",
                         {"outcome", "balls"},
                         {}};
   for (const auto& [outcome, balls] : outcomes) table.rows.push_back({outcome, std::to_string(balls)});
@@ -168,7 +163,7 @@ void StudySymmetricY(const ReproduceOptions& options, ReproduceReport& report) {
   const double bound = 0.03 * std::sqrt(static_cast<double>(kTurnsInY) / count);
   report.figures.push_back(
       {"symmetric Y, even flow: part of " + std::to_string(turns.balls) + " balls that turn left",
-       Fixed(turns.share(), 4), "0.5 +- " + Fixed(bound, 4),
+       FormatFixed(turns.share(), 4), "0.5 +- " + FormatFixed(bound, 4),
        turns.balls > 0 && std::abs(turns.share() - 0.5) <= bound});
 }
 
@@ -185,8 +180,8 @@ void StudyShares(const char* title, double straight_deg, double branch_deg, doub
                                    from + step * static_cast<double>(i + 1),
                                    MakeBranching(straight_deg, branch_deg, kShares[i], 0.5));
     const double p = turns.share(), variance = p * (1 - p) / std::max(1, turns.balls);
-    table.rows.push_back(
-        {Fixed(kShares[i], 2), std::to_string(turns.balls), Fixed(p, 3), Fixed(std::sqrt(variance), 3)});
+    table.rows.push_back({FormatFixed(kShares[i], 2), std::to_string(turns.balls), FormatFixed(p, 3),
+                          FormatFixed(std::sqrt(variance), 3)});
     if (i > 0 && p < before - 3 * std::sqrt(variance + variance_before)) rises = false;
     if (i == 0) first = p;
     before = last = p;
@@ -194,8 +189,8 @@ void StudyShares(const char* title, double straight_deg, double branch_deg, doub
   }
   report.tables.push_back(std::move(table));
   report.figures.push_back({std::string(title) + ": rises with the share, from a few to most",
-                            Fixed(first, 3) + " to " + Fixed(last, 3), "monotone, <= 0.2 to >= 0.8",
-                            rises && first <= 0.2 && last >= 0.8});
+                            FormatFixed(first, 3) + " to " + FormatFixed(last, 3),
+                            "monotone, <= 0.2 to >= 0.8", rises && first <= 0.2 && last >= 0.8});
 }
 
 ReproduceReport Run(const ReproduceOptions& options) {

@@ -11,6 +11,7 @@
 #include "sim/launch.h"
 #include "sim/load_ranges.h"
 #include "sim/motion.h"
+#include "sim/stream_fluctuations.h"
 
 namespace piperun::sim {
 namespace {
@@ -38,6 +39,12 @@ double CalcResolvedShare(double z) {
   constexpr double kFree = 0.5, kMost = 0.9;
   if (z <= kFree) return 1;
   return (kFree + (kMost - kFree) * -std::expm1(-(z - kFree) / (kMost - kFree))) / z;
+}
+
+/// Share of a sudden change of the water's velocity that the ball takes part in without drag (chi,
+/// sim/turbulence.h).
+double CalcResponse(const BallParams& ball, const FluidLoadCoefficients& c) {
+  return std::min(1.0, c.accelerated_mass_kg / (ball.mass_kg() + c.added_mass_kg));
 }
 
 /// Of the pipes that are open to the ball; first the one it is put into.
@@ -68,10 +75,12 @@ class BallInPipe : public Motion {
         rate_(params.rate_Hz),
         way_(*context.network, context.launch),
         field_(*context.bore, *context.flow, context.water, context.gravity_W.norm(), context.ball.radius_m,
-               FindProfileLaw(params.stream.profile)),
+               params.stream),
         coefficients_(CalcFluidLoadCoefficients(context.ball, params.forces, context.water, context.gravity_W,
                                                 BoreRadii_m(context))),
         ranges_(coefficients_, context.water, FindProfileLaw(params.stream.profile)),
+        fluctuations_(params.stream, context.seed, context.run, rate_, 2 * context.ball.radius_m,
+                      CalcResponse(context.ball, coefficients_), context.water.kinematic_viscosity_m2_s),
         world_(*context.bore, MakeTubeBall(ApplyForces(context.ball, params.forces), coefficients_), rate_,
                MakeLaunch(context, context.lateral_sd_m),
                [this](const BallInstant& ball) { return EvalLoad(ball); }) {
@@ -100,6 +109,7 @@ class BallInPipe : public Motion {
   }
 
   void Step() override {
+    fluctuations_.Step();
     world_.Step();
     if (world_.state().crossing) way_.Cross(*world_.state().crossing);
     Publish();
@@ -110,7 +120,8 @@ class BallInPipe : public Motion {
   BallLoad EvalLoad(const BallInstant& ball) {
     if (!Fits(context_.ball, PipeOf(ball.spot).RadiusAt_m(ball.spot.s_m))) too_large_ = true;
     if (too_large_) return {};  // beyond what drag is known for; the run is over
-    water_ = field_.Eval(ball.spot, ball.p_LB, ball.time);
+    water_ = field_.Eval(ball.spot, ball.p_LB, ball.time, fluctuations_.swirl());
+    fluctuations_.AddTo(ball.spot, ball.p_LB, water_);
     FluidLoad load = CalcFluidLoad(coefficients_, ball.v_WB_W, ball.w_WB_W, water_);
     ranges_.Feed(load.numbers, water_);
     const double slip_m_s = (water_.velocity_W - ball.v_WB_W).norm();
@@ -206,6 +217,7 @@ class BallInPipe : public Motion {
   FlowField field_;
   FluidLoadCoefficients coefficients_;
   LoadRanges ranges_;
+  StreamFluctuations fluctuations_;
   WaterAtBall water_;  // where and when the world evaluated the loads last: at its present state
   bool too_large_ = false;
   std::int64_t held_back_ = 0;  // steps whose drag was more than they can follow

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
+
 #include <cmath>
 #include <set>
 #include <string>
@@ -139,6 +141,38 @@ TEST(RandomStream, NormalsHaveTheTailsOfTheNormalDistribution) {
     const double p = std::erfc(k / std::sqrt(2.0));
     EXPECT_NEAR(beyond / n, p, 5 * std::sqrt(p * (1 - p) / n)) << k << " sigma";
   }
+}
+
+TEST(RandomStream, SixNormalsFollowFromTheHalvesOfTheBitsByBoxAndMuller) {
+  const RandomStream stream(6, "turbulence", 2);
+  for (std::uint64_t sample = 0; sample < 2000; ++sample) {
+    const auto bits = stream.Bits(sample, 1);
+    const auto n = stream.SixNormals(sample, 1);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double u = (static_cast<double>(bits[i] >> 32) + 0.5) / 4294967296.0;
+      const double v = (static_cast<double>(bits[i] & 0xffffffff) + 0.5) / 4294967296.0;
+      const double radius = std::sqrt(-2 * std::log(u)), angle = 2 * std::numbers::pi * (v - 0.125);
+      EXPECT_NEAR(n[2 * i], radius * std::cos(angle), 4e-15);
+      EXPECT_NEAR(n[2 * i + 1], radius * std::sin(angle), 4e-15);
+    }
+  }
+}
+
+TEST(RandomStream, SixNormalsHaveTheMomentsOfTheNormalDistribution) {
+  const RandomStream stream(7, "turbulence", 0);
+  constexpr int kSamples = 100000;
+  Eigen::Matrix<double, 6, 6> second = Eigen::Matrix<double, 6, 6>::Zero();
+  double fourth = 0;
+  for (std::uint64_t k = 0; k < kSamples; ++k) {
+    const auto n = stream.SixNormals(k, 0);
+    const Eigen::Map<const Eigen::Matrix<double, 6, 1>> x(n.data());
+    second += x * x.transpose() / kSamples;
+    fourth += x.array().square().square().mean() / kSamples;
+  }
+  // variances 2/n and 1/n, 96/(6 n): five standard deviations
+  const Eigen::Matrix<double, 6, 6> off = second - Eigen::Matrix<double, 6, 6>::Identity();
+  EXPECT_LT(off.cwiseAbs().maxCoeff(), 5 * std::sqrt(2.0 / kSamples));
+  EXPECT_NEAR(fourth, 3, 5 * std::sqrt(16.0 / kSamples));
 }
 
 // Box and Muller by hand from the raw bits of one block

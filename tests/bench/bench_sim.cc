@@ -3,6 +3,7 @@
 #include "sim/fluid_load.h"
 #include "sim/hydraulics.h"
 #include "sim/motion.h"
+#include "sim/stream_fluctuations.h"
 #include "tests/support/pipes.h"
 
 namespace piperun::sim {
@@ -62,6 +63,37 @@ std::vector<Vector3d> ZigZag() {
     points.push_back(points.back() + (i % 2 ? Vector3d(0, 1, 0) : Vector3d(1, 0, 0)));
   return points;
 }
+
+/// One step of turbulence around the reference ball, noise included; with swirl switching.
+void FluctuationStep(benchmark::State& state, bool switching) {
+  StreamParams params;
+  params.turbulence.on = true;
+  params.swirl_switching = switching;
+  StreamFluctuations fluctuations(params, 1, 0, Rate(1000), 0.06, 1, 1e-6);
+  WaterAtBall mean;
+  mean.velocity_W = {1, 0, 0};
+  mean.bulk_speed_m_s = 1;
+  mean.bore_radius_m = 0.075;
+  mean.friction_velocity_m_s = 0.05;
+  NetworkSpot spot;
+  spot.axis = {Vector3d::Zero(), Vector3d::UnitX(), Vector3d::Zero()};
+  for (auto _ : state) {
+    fluctuations.Step();
+    WaterAtBall water = mean;
+    fluctuations.AddTo(spot, {0, 0.01, -0.03}, water);
+    benchmark::DoNotOptimize(water);
+  }
+}
+
+BENCHMARK_CAPTURE(FluctuationStep, turbulence, false);
+BENCHMARK_CAPTURE(FluctuationStep, and_swirl, true);
+
+void SixNormals(benchmark::State& state) {
+  const RandomStream noise(1, "turbulence", 0);
+  std::uint64_t sample = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(noise.SixNormals(++sample, 0));
+}
+BENCHMARK(SixNormals);
 
 BENCHMARK_CAPTURE(WorldStep, straight, std::vector<Vector3d>{{0, 0, 0}, {100000, 0, 0}});
 BENCHMARK_CAPTURE(WorldStep, bends, ZigZag());

@@ -29,7 +29,9 @@ SteadyFlow Solve(const PipeLine& line, double speed_m_s) {
 
 WaterAtBall EvalAt(const PipeLine& line, const SteadyFlow& flow, const Vector3d& p_W) {
   const Bore bore(line.network);
-  const FlowField field(bore, flow.timeline, kWater, kGravity, 0.03);
+  StreamParams along;
+  along.secondary_flow = false;
+  const FlowField field(bore, flow.timeline, kWater, kGravity, 0.03, along);
   return field.Eval(SpotIn(line.network, 0, p_W), p_W, {});
 }
 

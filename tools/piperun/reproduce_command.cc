@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "base/check.h"
@@ -44,9 +45,15 @@ void PrintReport(const scenarios::ReproduceReport& report) {
     for (const auto& row : content.rows) table.Add(row);
     fmt::print("{}\n{}\n", content.title, table.Text());
   }
-  Table figures({"figure", "measured", "expected", "result"});
+  const bool sources = std::any_of(report.figures.begin(), report.figures.end(),
+                                   [](const scenarios::ReproducedFigure& f) { return !f.source.empty(); });
+  std::vector<std::string> head{"figure", "measured", "expected", "result"};
+  if (sources) head.emplace_back("by");
+  Table figures(head);
   for (const scenarios::ReproducedFigure& f : report.figures) {
-    figures.Add({f.what, f.measured, f.expected, f.passed ? "ok" : "FAILED"});
+    std::vector<std::string> row{f.what, f.measured, f.expected, f.passed ? "ok" : "FAILED"};
+    if (sources) row.push_back(f.source);
+    figures.Add(row);
   }
   fmt::print("{}", figures.Text());
 }

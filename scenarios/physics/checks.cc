@@ -1,0 +1,53 @@
+#include "scenarios/physics/checks.h"
+
+#include <cmath>
+
+#include "base/number.h"
+
+namespace piperun::scenarios::physics {
+namespace {
+
+/// As many digits as show a difference of the size of the tolerance.
+std::string TextWithin(double value, double tolerance) {
+  if (value == 0 || tolerance <= 0) return FormatDigits(value, 4);
+  const double digits = std::log10(std::abs(value) / tolerance) + 2;
+  return FormatDigits(value, static_cast<int>(std::fmin(std::fmax(digits, 3), 15)));
+}
+
+}  // namespace
+
+void Checks::Add(const std::string& what, const std::string& measured, const std::string& expected,
+                 bool passed, std::string_view source) {
+  report_.figures.push_back({group_ + ": " + what, measured, expected, passed, std::string(source)});
+}
+
+void Checks::Near(const std::string& what, double measured, double expected, double tolerance,
+                  std::string_view source) {
+  Add(what, TextWithin(measured, tolerance),
+      TextWithin(expected, tolerance) + " +- " + FormatDigits(tolerance, 2),
+      std::abs(measured - expected) <= tolerance, source);
+}
+
+void Checks::Relative(const std::string& what, double measured, double expected, double tolerance,
+                      std::string_view source) {
+  const double absolute = tolerance * std::abs(expected);
+  Add(what, TextWithin(measured, absolute) + " (" + FormatDigits(measured / expected - 1, 2) + ")",
+      TextWithin(expected, absolute) + " (1 +- " + FormatDigits(tolerance, 2) + ")",
+      std::abs(measured - expected) <= absolute, source);
+}
+
+void Checks::AtMost(const std::string& what, double measured, double limit, std::string_view source) {
+  Add(what, FormatDigits(measured, 3), "<= " + FormatDigits(limit, 3), measured <= limit, source);
+}
+
+void Checks::AtLeast(const std::string& what, double measured, double limit, std::string_view source) {
+  Add(what, FormatDigits(measured, 4), ">= " + FormatDigits(limit, 4), measured >= limit, source);
+}
+
+void Checks::Between(const std::string& what, double measured, double low, double high,
+                     std::string_view source) {
+  Add(what, FormatDigits(measured, 4), FormatDigits(low, 4) + " to " + FormatDigits(high, 4),
+      measured >= low && measured <= high, source);
+}
+
+}  // namespace piperun::scenarios::physics
