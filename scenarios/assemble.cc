@@ -32,6 +32,9 @@ void BuildWay(const Scenario& scenario, Assembly& assembly) {
   const Pipeline& pipeline = *assembly.pipeline;
   assembly.plan.emplace(pipeline.network, pipeline.plan);
   assembly.bore.emplace(pipeline.network, FindOpenPipes(scenario.mission, pipeline));
+  WallFeatureList list = MakeWallFeatures(scenario, *assembly.bore);
+  assembly.bore->SetFeatures(std::move(list.features));
+  assembly.wall_features = std::move(list.labels);
 }
 
 void BuildScene(const Scenario& scenario, Assembly& assembly) {
@@ -131,6 +134,8 @@ std::unique_ptr<Assembly> Build(const Scenario& scenario) {
     BuildWay(scenario, *assembly);
   } else if (!scenario.leaks.empty() || scenario.random_leaks.count > 0) {
     throw InputError("a leak needs a pipe, and this scenario has no network", "leaks");
+  } else if (!scenario.wall_features.empty()) {
+    throw InputError("a wall feature needs a pipe, and this scenario has no network", "wall_features");
   }
   BuildScene(scenario, *assembly);
   BuildMotion(scenario, *assembly);

@@ -11,6 +11,7 @@
 #include "scenarios/channel.h"
 #include "scenarios/pipeline.h"
 #include "scenarios/scenario.h"
+#include "scenarios/wall_feature_list.h"
 #include "sim/motion.h"
 
 namespace piperun::scenarios {
@@ -19,8 +20,9 @@ namespace piperun::scenarios {
 struct Assembly {
   WaterProperties water;
   std::optional<Pipeline> pipeline;
-  std::optional<Route> plan;      ///< the way the crew expects
-  std::optional<sim::Bore> bore;  ///< what is open to the ball
+  std::optional<Route> plan;                    ///< the way the crew expects
+  std::optional<sim::Bore> bore;                ///< what is open to the ball
+  std::vector<WallFeatureLabel> wall_features;  ///< of the bore; a contact's `feature` indexes them
   acoustics::AcousticScene scene;
   ClockModel clock;
   std::unique_ptr<sim::Motion> motion;

@@ -8,6 +8,7 @@
 #include "estimator/filter_kind.h"
 #include "sim/motion.h"
 #include "sim/sensor.h"
+#include "sim/wall_feature.h"
 
 namespace piperun::scenarios {
 namespace {
@@ -49,6 +50,10 @@ const std::vector<KindOption>& MotionOptions() {
 }
 const std::vector<KindOption>& LeakSoundOptions() {
   static const std::vector<KindOption> options = MakeOptions(acoustics::LeakSoundKinds());
+  return options;
+}
+const std::vector<KindOption>& WallFeatureOptions() {
+  static const std::vector<KindOption> options = MakeOptions(sim::WallFeatureKinds());
   return options;
 }
 const std::vector<KindOption>& FilterOptions() {

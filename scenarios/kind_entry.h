@@ -20,6 +20,7 @@ struct KindOption {
 const std::vector<KindOption>& SensorOptions();  ///< the sensors of sim/, and the hydrophone
 const std::vector<KindOption>& MotionOptions();
 const std::vector<KindOption>& LeakSoundOptions();
+const std::vector<KindOption>& WallFeatureOptions();
 const std::vector<KindOption>& FilterOptions();
 
 /// "kind: NAME" and, beside it, the parameters of that kind. A value type.

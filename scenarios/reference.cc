@@ -103,6 +103,7 @@ std::string WriteReference() {
   WriteKinds(out, "Motion", MotionOptions());
   WriteKinds(out, "Sensor", SensorOptions());
   WriteKinds(out, "Leak sound", LeakSoundOptions());
+  WriteKinds(out, "Wall feature", WallFeatureOptions());
   WriteKinds(out, "Estimator", FilterOptions());
   return out;
 }

@@ -99,6 +99,12 @@ void LeakEntry::Visit(ParamVisitor& v) {
   v.Struct({"sound", "How it sounds."}, sound);
 }
 
+void WallFeatureEntry::Visit(ParamVisitor& v) {
+  v.Text({"id", "Name of the feature; those of a series get a number, ID[1].", true}, id);
+  v.Text({"pipe", "Pipe it is in; \"*\": every pipe open to the ball.", true}, pipe);
+  kind.Visit(v);
+}
+
 void RandomLeaksParams::Visit(ParamVisitor& v) {
   static constexpr std::array<std::string_view, 2> kPlaces{"way", "network"};
   v.Integer({"count", "How many."}, 0, 1000, count);
@@ -192,6 +198,7 @@ void Scenario::Visit(ParamVisitor& v) {
   v.Struct({"ambient", "What the hydrophone hears besides leaks."}, ambient);
   v.Items({"leaks", "Holes in the wall."}, leaks);
   v.Struct({"random_leaks", "Holes drawn by seed and run."}, random_leaks);
+  v.Items({"wall_features", "What the ball runs into: joints, beads, scale, valves, holes."}, wall_features);
   v.Struct({"motion", "What moves the ball."}, motion);
   v.Struct({"ball", "The ball."}, ball);
   v.Struct({"mission", "Where it goes in and out, and when to give up."}, mission);

@@ -88,6 +88,14 @@ struct LeakEntry {
   void Visit(ParamVisitor& v);
 };
 
+/// Something on the wall that the ball runs into; or many of them.
+struct WallFeatureEntry {
+  std::string id;
+  std::string pipe;
+  KindEntry kind{WallFeatureOptions, "joint"};
+  void Visit(ParamVisitor& v);
+};
+
 /// Leaks drawn by seed and run index, on top of those that are listed.
 struct RandomLeaksParams {
   std::int64_t count = 0;
@@ -176,6 +184,7 @@ struct Scenario {
   acoustics::AmbientParams ambient;
   std::vector<LeakEntry> leaks;
   RandomLeaksParams random_leaks;
+  std::vector<WallFeatureEntry> wall_features;
   KindEntry motion{MotionOptions, "ball_in_pipe"};
   sim::BallParams ball;
   MissionParams mission;

@@ -15,6 +15,8 @@ constexpr std::string_view kGroundtruthHeader =
     "b_w_RS_S_z [rad s^-1],b_a_RS_S_x [m s^-2],b_a_RS_S_y [m s^-2],b_a_RS_S_z [m s^-2]\n";
 constexpr std::string_view kLeaksHeader = "id,pipe,s_m,chainage_m,x_m,y_m,z_m,flow_m3_s,t_cpa_ns,snr_dB\n";
 
+constexpr std::string_view kFeaturesHeader = "id,kind,pipe,s_m,chainage_m\n";
+
 std::int64_t Nanoseconds(TrueTime t) { return t.time_since_epoch().count(); }
 
 /// When the ball passed the leak, to the nanosecond: from the closest step on at the speed it had there.
@@ -97,16 +99,15 @@ void TruthRecorder::UpdateApproach(std::size_t leak, const sim::TruthWindow& win
   closest = state;
 }
 
-/// Where a leak lies on the way taken, or on what was still to come of the planned one; in the drawing, and
+/// Where a place lies on the way taken, or on what was still to come of the planned one; in the drawing, and
 /// without a chainage, when it lies on neither.
-TruthRecorder::LeakPlace TruthRecorder::FindPlace(const Leak& leak) const {
-  const Pipe& pipe = assembly_.network()->pipe(leak.pipe);
-  const Vector3d p_L = pipe.Eval(leak.s_m).p_W;
+TruthRecorder::Place TruthRecorder::FindPlace(int pipe, double s_m) const {
+  const Vector3d p_L = assembly_.network()->pipe(pipe).Eval(s_m).p_W;
   const sim::Way* way = assembly_.motion->way();
-  const auto planned = assembly_.plan->Chainage(leak.pipe, leak.s_m);
+  const auto planned = assembly_.plan->Chainage(pipe, s_m);
   if (way) {
-    if (const sim::WayLeg* leg = way->FindLeg(leak.pipe)) {
-      return {way->CalcChainage_m(*leg, leak.s_m), p_L + leg->offset_W};
+    if (const sim::WayLeg* leg = way->FindLeg(pipe)) {
+      return {way->CalcChainage_m(*leg, s_m), p_L + leg->offset_W};
     }
     if (!FollowsPlan(*way, *assembly_.plan)) return {std::nullopt, p_L};
   }
@@ -114,15 +115,27 @@ TruthRecorder::LeakPlace TruthRecorder::FindPlace(const Leak& leak) const {
   return {planned, assembly_.plan->Eval(*planned).p_W};
 }
 
+void TruthRecorder::WriteFeatures() const {
+  OutputFile file(truth_folder_ / "features.csv");
+  file.Append(kFeaturesHeader);
+  for (const WallFeatureLabel& feature : assembly_.wall_features) {
+    CsvRow(file) << std::string_view(feature.id) << std::string_view(feature.kind)
+                 << std::string_view(assembly_.network()->pipe(feature.pipe).id) << feature.s_m
+                 << FindPlace(feature.pipe, feature.s_m).chainage_m << kEndOfRow;
+  }
+  file.Close();
+}
+
 std::vector<TrueLeak> TruthRecorder::Close(const acoustics::HydrophoneParams* hydrophone) {
   ball_.Close();
   groundtruth_.Close();
+  if (!assembly_.wall_features.empty()) WriteFeatures();
   OutputFile file(truth_folder_ / "leaks.csv");
   file.Append(kLeaksHeader);
   std::vector<TrueLeak> leaks;
   for (std::size_t i = 0; i < approaches_.size(); ++i) {
     const Leak& at = assembly_.pipeline->leaks[i];
-    const LeakPlace place = FindPlace(at);
+    const Place place = FindPlace(at.pipe, at.s_m);
     TrueLeak leak{at.id,     assembly_.network()->pipe(at.pipe).id,        at.s_m,       place.chainage_m,
                   place.p_W, assembly_.pipeline->leak_states[i].flow_m3_s, std::nullopt, std::nullopt};
     const auto& closest = approaches_[i];

@@ -20,18 +20,20 @@ class TruthRecorder {
 
   /// Call after every push into the window.
   void Record(const sim::TruthWindow& window);
-  /// Completes the files, writes leaks.csv and returns what it says.
+  /// Completes the files, writes leaks.csv (and features.csv, where there are any) and returns what leaks.csv
+  /// says.
   std::vector<TrueLeak> Close(const acoustics::HydrophoneParams* hydrophone);
 
  private:
   void WriteRow(const sim::TruthState& state);
   void UpdateApproach(std::size_t leak, const sim::TruthWindow& window);
 
-  struct LeakPlace {
+  struct Place {
     std::optional<double> chainage_m;
     Vector3d p_W;
   };
-  LeakPlace FindPlace(const Leak& leak) const;
+  Place FindPlace(int pipe, double s_m) const;
+  void WriteFeatures() const;
 
   const Assembly& assembly_;
   Rate truth_rate_;

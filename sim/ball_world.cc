@@ -9,12 +9,7 @@ namespace piperun::sim {
 class BallWorld::Impl {
  public:
   Impl(const Bore& bore, const TubeBall& ball, Rate rate, const BallStart& start, BallLoadFunction load)
-      : bore_(bore),
-        ball_(ball),
-        rate_(rate),
-        dt_s_(rate.Period_s()),
-        load_(std::move(load)),
-        world_(bore, ball, start) {
+      : bore_(bore), rate_(rate), dt_s_(rate.Period_s()), load_(std::move(load)), world_(bore, ball, start) {
     state_.X_LB = start.X_LB;
     state_.v_step_W = start.v_WB_W;
     state_.dtheta_B_rad.setZero();
@@ -29,27 +24,27 @@ class BallWorld::Impl {
   const BallState& state() const { return state_; }
 
   void Step() {
-    const Vector3d v_ahead = world_.v_L();
+    const Vector3d v_ahead = world_.v_step_L();
     const Vector3d w_ahead = world_.w_L();
     const Vector3d v_now = v_ahead + 0.5 * dt_s_ * state_.a_WB_W;
     const Vector3d w_now = w_ahead + 0.5 * dt_s_ * state_.alpha_WB_W;
     state_.time = SampleTime(++step_, rate_);
     Relocate();
     state_.v_step_W = v_ahead;
-    state_.dtheta_B_rad = state_.X_LB.q.conjugate() * w_ahead * dt_s_;
-    state_.X_LB.q = (state_.X_LB.q * ExpSO3(state_.dtheta_B_rad)).normalized();
+    state_.dtheta_B_rad = world_.dtheta_B_rad();
+    state_.X_LB.q = world_.q_LB();
     w_step_W_ = w_ahead;
     StepAhead(v_now, w_now, dt_s_);
-    state_.v_WB_W = 0.5 * (v_ahead + world_.v_L());
+    state_.v_WB_W = 0.5 * (v_ahead + world_.v_step_L());
     state_.w_WB_W = 0.5 * (w_ahead + world_.w_L());
   }
 
  private:
   void Relocate() {
-    const Vector3d p_L = world_.p_L();
+    const Vector3d& p_L = world_.p_L();
     const SpotMove move = FindNetworkSpot(bore_, p_L, state_.spot);
-    world_.MoveTo(move);
     state_.X_LB.p = move.crossing ? Vector3d(p_L + move.crossing->shift_L) : p_L;
+    world_.MoveTo(move);
     state_.spot = move.spot;
     state_.crossing = move.crossing;
   }
@@ -58,16 +53,15 @@ class BallWorld::Impl {
   /// learns from that.
   void StepAhead(const Vector3d& v_now_W, const Vector3d& w_now_W, double kick_s) {
     const BallLoad load = load_({state_.time, state_.X_LB.p, state_.X_LB.q, v_now_W, w_now_W, state_.spot});
-    world_.Step(kick_s / ball_.mass_kg * load.force_W_N, kick_s / ball_.inertia_kg_m2 * load.torque_W_N_m,
-                dt_s_);
-    state_.a_WB_W = (world_.v_L() - state_.v_step_W) / kick_s;
+    world_.Step(load, kick_s, dt_s_);
+    state_.a_WB_W = (world_.v_step_L() - state_.v_step_W) / kick_s;
     state_.alpha_WB_W = (world_.w_L() - w_step_W_) / kick_s;
     state_.normal_force_N = world_.normal_impulse_N_s() / kick_s;
+    state_.contacts = world_.contacts();
     state_.rescues = world_.rescues();
   }
 
   const Bore& bore_;
-  TubeBall ball_;
   Rate rate_;
   double dt_s_;
   BallLoadFunction load_;

@@ -9,6 +9,7 @@
 
 #include "base/time.h"
 #include "sim/network_spot.h"
+#include "sim/rotary_inertia.h"
 
 namespace piperun::sim {
 
@@ -19,13 +20,17 @@ struct ContactCompliance {
   double damping_N_s_m = 0;  ///< c
 };
 
-/// A homogeneous sphere in a tube. The mass is the inertial one: the added mass of the water belongs into it.
+/// A sphere in a tube, whose mass may lie off its centre B. The mass matrix is the inertial one: the added
+/// mass of the water belongs into it (sim/ball_mass.h).
 struct TubeBall {
   double radius_m = 0;
-  double mass_kg = 0;
-  double inertia_kg_m2 = 0;     ///< about the centre
-  double friction = 0;          ///< Coulomb coefficient at the wall
-  double rolling_length_m = 0;  ///< b = c_rr r: resisting torque over normal force
+  double mass_kg = 0;                  ///< M
+  RotaryInertia inertia_B_kg_m2 = 0;   ///< about the centre of mass of M
+  double friction = 0;                 ///< Coulomb coefficient at the wall
+  double rolling_length_m = 0;         ///< b = c_rr r: resisting torque over normal force
+  double spinning_length_m = 0;        ///< b_sp = c_sp r: the same for the torque about the normal
+  double restitution = 0;              ///< e, of rigid contacts; with a compliance, its damping decides
+  Vector3d p_BM_B = Vector3d::Zero();  ///< centre of mass of M
   std::optional<ContactCompliance> compliance = std::nullopt;  ///< none: rigid
 };
 
@@ -48,8 +53,8 @@ struct BallInstant {
 };
 
 struct BallLoad {
-  Vector3d force_W_N = Vector3d::Zero();  ///< everything but the wall, weight included
-  Vector3d torque_W_N_m = Vector3d::Zero();
+  Vector3d force_W_N = Vector3d::Zero();     ///< at B: everything but the wall, weight included
+  Vector3d torque_W_N_m = Vector3d::Zero();  ///< about B
 };
 
 using BallLoadFunction = std::function<BallLoad(const BallInstant&)>;
@@ -58,8 +63,8 @@ using BallLoadFunction = std::function<BallLoad(const BallInstant&)>;
 struct StepContact {
   Vector3d normal_W;                          ///< unit, from the wall to the ball
   Vector3d impulse_W_N_s = Vector3d::Zero();  ///< of the wall on the ball, friction included
-  double closing_speed_m_s = 0;  ///< at which the ball would have run into the wall; 0: it was following it
-  int feature = -1;              ///< as in WallFoot
+  double closing_speed_m_s = 0;               ///< of an impact (sim/impact.h); 0: it was following the wall
+  int feature = -1;                           ///< as in WallFoot
 };
 
 /// The contacts of one step.
@@ -96,11 +101,14 @@ struct BallState {
 /// A ball under given loads inside the bores of a network, in a Bullet scene.
 ///
 /// Integrated leapfrog: v(n+1/2) = v(n-1/2) + dt (F_n + contact_n)/m, p(n+1) = p(n) + dt v(n+1/2), with half
-/// a kick in the first step. F_n is evaluated at v_n = v(n-1/2) + a(n-1) dt/2, so straight motion and
-/// frictionless rocking are of second order; rolling friction on a turning contact normal is of first, and so
-/// are impacts. The contact is inelastic, rigid or with a compliance; sliding friction obeys Coulomb's cone,
-/// rolling resistance a disc of radius b N. The state at step n needs the velocity half a step later: the
-/// world runs one step ahead of what it tells. Where pipes meet, the ball goes wherever it is pushed.
+/// a kick in the first step; turning alike in the angular momentum (sim/tumbling.h). F_n is evaluated at v_n
+/// = v(n-1/2) + a(n-1) dt/2, so straight motion, tumbling, frictionless rocking and the rolling of an
+/// eccentric ball are of second order; rolling friction on a turning contact normal is of first, and so are
+/// impacts. Loads act at the sphere's centre B, everything told is about B; v_step = v_M - (R(n+1) - R(n))
+/// p_BM/dt. The contact is rigid, with or without a rebound (sim/impact.h), or has a compliance; sliding
+/// friction obeys Coulomb's cone, rolling resistance a disc of radius b N, spinning resistance b_sp N. The
+/// state at step n needs the velocity half a step later: the world runs one step ahead of what it tells.
+/// Where pipes meet, the ball goes wherever it is pushed.
 class BallWorld {
  public:
   /// Keeps a reference to the bore. The ball must start inside the water, at its spot.

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "base/network.h"
+#include "sim/feature_shape.h"
 
 namespace piperun::sim {
 
@@ -46,6 +47,10 @@ class Bore {
   const Joint& joint(int node) const { return joints_[static_cast<std::size_t>(node)]; }
   bool open(int pipe) const { return open_[static_cast<std::size_t>(pipe)]; }
 
+  /// What stands on the walls or is cut into them; before anything is made from this bore.
+  void SetFeatures(std::vector<WallFeature> features) { features_ = std::move(features); }
+  const std::vector<WallFeature>& features() const { return features_; }
+
   /// The joint whose other arms are felt at `s_m` of a pipe; null along the rest of it, and at smooth joints.
   const Joint* FindJoint(int pipe, double s_m) const;
   /// True when a point (in the drawing of the spot's pipe) lies inside the bores.
@@ -62,6 +67,7 @@ class Bore {
   const Network& network_;
   std::vector<bool> open_;
   std::vector<Joint> joints_;  // per node
+  std::vector<WallFeature> features_;
 };
 
 }  // namespace piperun::sim

@@ -16,13 +16,13 @@ Pose MakeFrame(const Vector3d& origin_L, const Vector3d& x_L, const Vector3d& y_
   return {origin_L, Quaterniond(R_LF).normalized()};
 }
 
-/// The foot that goes on from one with this normal.
-const WallFoot* FindContinued(const WallFeet& feet, const Vector3d& normal_F) {
+/// The foot that goes on from one with this normal on this body.
+const WallFoot* FindContinued(const WallFeet& feet, const Vector3d& normal_F, int body) {
   const WallFoot* best = nullptr;
   double best_cosine = kSameSheet;
   for (const WallFoot& foot : feet) {
     const double cosine = foot.normal.dot(normal_F);
-    if (foot.kind != WallFoot::Kind::kSheet || cosine <= best_cosine) continue;
+    if (foot.kind != WallFoot::Kind::kSheet || foot.body != body || cosine <= best_cosine) continue;
     best = &foot;
     best_cosine = cosine;
   }
@@ -49,6 +49,7 @@ BoreWall::BoreWall(const Bore& bore) : bore_(bore) {
     joints_.push_back(plain ? nullptr : std::make_unique<const JointWall>(bore, joint));
   }
   for (std::size_t pipe = 0; pipe < network.pipes().size(); ++pipe) AddPipe(static_cast<int>(pipe));
+  PlaceFeatures();
 }
 
 void BoreWall::AddPipe(int pipe) {
@@ -87,6 +88,84 @@ BoreWall::Piece BoreWall::MakePiece(const CentrelinePiece& line) {
   return p;
 }
 
+void BoreWall::PlaceFeatures() {
+  const auto& features = bore_.features();
+  int body = 0;
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    for (const FeatureShape& shape : features[i].shapes) {
+      PlacedShape placed;
+      placed.feature = static_cast<int>(i);
+      placed.body = body++;
+      placed.shape = &shape.body;
+      const ShapePlace place = MakePlace(features[i].pipe, shape);
+      PlaceInPipe(place, placed);
+      for (const bool at_to : {false, true}) PlaceBeyond(place, at_to, placed);
+    }
+  }
+  if (body == 0) return;
+  for (std::size_t pipe = 0; pipe < walls_.size(); ++pipe) {
+    const std::size_t end = pipe + 1 < walls_.size() ? walls_[pipe + 1].first_piece : pieces_.size();
+    for (std::size_t i = walls_[pipe].first_piece; i < end; ++i) {
+      pieces_[i].features.Finish(2 * walls_[pipe].radius_m);
+    }
+  }
+}
+
+BoreWall::ShapePlace BoreWall::MakePlace(int pipe, const FeatureShape& shape) const {
+  const CentrelinePoint axis = bore_.network().pipe(pipe).Eval(shape.s_m);
+  const Vector3d& x_L = axis.tangent_W;
+  const Vector3d y_L = (shape.towards_W - shape.towards_W.dot(x_L) * x_L).normalized();
+  ShapePlace place;
+  place.pipe = pipe;
+  place.s_m = shape.s_m;
+  place.extent = CalcExtent(shape.body);
+  place.p_LG = axis.p_W;
+  place.R_LG << x_L, y_L, x_L.cross(y_L);
+  return place;
+}
+
+/// Into every piece in which a ball may touch it: one diameter of room, and in a bend, whose inner side is
+/// shorter than its axis, as much more.
+void BoreWall::PlaceInPipe(const ShapePlace& place, PlacedShape shape) {
+  const Pipe& pipe = bore_.network().pipe(place.pipe);
+  const double a = place.sense * place.extent.begin_m, b = place.sense * place.extent.end_m;
+  for (std::size_t i = 0; i < pipe.centreline.size(); ++i) {
+    const CentrelinePiece& line = pipe.centreline[i];
+    const double stretch = 1 / (1 - pipe.radius_m() * line.curvature_1_m);
+    const double more_m = (stretch - 1) * (b > a ? b - a : a - b) + (stretch - 1) * pipe.diameter_m;
+    shape.s_m = place.s_m;
+    shape.begin_m = place.s_m + std::min(a, b) - more_m;
+    shape.end_m = place.s_m + std::max(a, b) + more_m;
+    const double room_m = stretch * pipe.diameter_m;
+    if (shape.begin_m - room_m > line.s_end_m() || shape.end_m + room_m < line.s_begin_m) continue;
+    Piece& piece = pieces_[walls_[static_cast<std::size_t>(place.pipe)].first_piece + i];
+    shape.p_FG = piece.X_FL * place.p_LG;
+    shape.R_GF = place.R_LG.transpose() * piece.R_LF;
+    piece.features.Add(shape);
+  }
+}
+
+/// And into the pipe behind a smooth joint, when it is felt there.
+void BoreWall::PlaceBeyond(const ShapePlace& place, bool at_to, const PlacedShape& shape) {
+  const Pipe& pipe = bore_.network().pipe(place.pipe);
+  const double a = place.s_m + place.sense * place.extent.begin_m;
+  const double b = place.s_m + place.sense * place.extent.end_m;
+  const double from_end_m = at_to ? pipe.length_m - std::max(a, b) : std::min(a, b);
+  const Joint& joint = bore_.joint(at_to ? pipe.to : pipe.from);
+  if (from_end_m > 2 * pipe.diameter_m || !joint.smooth) return;
+  const PipeEnd here{place.pipe, at_to};
+  const PipeEnd there = joint.arms[joint.arms[0].end == here ? 1 : 0].end;
+  const double beyond_m = at_to ? place.s_m - pipe.length_m : -place.s_m;  // negative: before the joint
+  const Pipe& next = bore_.network().pipe(there.pipe);
+  ShapePlace into = place;
+  into.pipe = there.pipe;
+  into.s_m = there.at_to ? next.length_m - beyond_m : beyond_m;
+  if (there.at_to == at_to) into.sense = -place.sense;
+  into.p_LG += bore_.ShiftAcross(here, there);
+  PlaceInPipe(into, shape);
+  PlaceBeyond(into, !there.at_to, shape);
+}
+
 const BoreWall::Piece& BoreWall::FindPiece(const NetworkSpot& spot) const {
   return pieces_[wall(spot).first_piece + spot.piece];
 }
@@ -104,7 +183,8 @@ bool BoreWall::IsPlain(const NetworkSpot& spot, double window_m) const {
   const End& end = NearEnd(spot);
   if (end.joint && CalcEndDistance_m(spot) < end.reach_m + window_m) return false;
   return bore_.network().pipe(spot.pipe).passable &&
-         wall(spot).profile.IsUniform(spot.s_m - window_m, spot.s_m + window_m);
+         wall(spot).profile.IsUniform(spot.s_m - window_m, spot.s_m + window_m) &&
+         FindPiece(spot).features.IsClear(spot.s_m - window_m, spot.s_m + window_m);
 }
 
 Vector3d BoreWall::CalcOffset(const Piece& piece, const Vector3d& p_F) {
@@ -152,12 +232,14 @@ WallFeet BoreWall::FindFeet(const NetworkSpot& spot, const Vector3d& p_F, const 
                             double limit_m) const {
   const PipePoint p = MakePipePoint(spot, p_F, sideways_F);
   const End& end = NearEnd(spot);
-  if (end.joint && CalcEndDistance_m(spot) < end.reach_m + limit_m) {
-    return FindFeetAtJoint(spot, p_F, p, limit_m, end);
-  }
   WallFeet feet;
-  wall(spot).profile.AddFeet(p, limit_m, kContactRange_m, feet);
-  AddPlate(spot, p, feet);
+  if (end.joint && CalcEndDistance_m(spot) < end.reach_m + limit_m) {
+    feet = FindFeetAtJoint(spot, p_F, p, limit_m, end);
+  } else {
+    wall(spot).profile.AddFeet(p, limit_m, kContactRange_m, feet);
+    AddPlate(spot, p, feet);
+  }
+  FindPiece(spot).features.Apply(p, p_F, limit_m, kContactRange_m, feet);
   return feet;
 }
 
@@ -184,7 +266,7 @@ WallFeet BoreWall::FindFeetAtJoint(const NetworkSpot& spot, const Vector3d& p_F,
   AddPlate(spot, p, feet);
   end.joint->AddFeet(p_N, end.arm, limit_m, kContactRange_m, joint);
   for (const WallFoot& foot : joint) {
-    feet.Add({R_LF.transpose() * foot.normal, foot.distance_m, foot.kind, foot.feature});
+    feet.Add({R_LF.transpose() * foot.normal, foot.distance_m, foot.kind, foot.feature, foot.body});
   }
   return feet;
 }
@@ -212,7 +294,7 @@ double BoreWall::PredictDistance(const NetworkSpot& spot, const Vector3d& p_F, c
   Landing to = Land(spot, p_F, step_F, foot.normal);
   if (&FindPiece(to.spot) == &FindPiece(spot)) to.spot.s_m += CalcAdvance_m(FindPiece(spot), p_F, to.p_F);
   const WallFeet feet = FindFeet(to.spot, to.p_F, -to.normal_F, foot.distance_m + step_F.norm());
-  const WallFoot* continued = FindContinued(feet, to.normal_F);
+  const WallFoot* continued = FindContinued(feet, to.normal_F, foot.body);
   return continued ? continued->distance_m : foot.distance_m;
 }
 
@@ -230,7 +312,8 @@ WallContacts BoreWall::ProbeTube(const NetworkSpot& spot, const Vector3d& p_F, c
   const Vector3d step_F = (v_F - v_n * normal_F) * dt_s;
   const Landing to = Land(spot, p_F, step_F, normal_F);
   const double gap_m = wall(to.spot).radius_m - radius_m - CalcOffset(FindPiece(to.spot), to.p_F).norm();
-  if (gap_m + v_n * dt_s < kContactRange_m) contacts.Add({normal_F, gap_m});
+  const double present_gap_m = wall(spot).radius_m - radius_m - offset.norm();
+  if (gap_m + v_n * dt_s < kContactRange_m) contacts.Add({normal_F, gap_m, -1, present_gap_m});
   contacts.rescue = offset.norm() > wall(spot).radius_m;
   return contacts;
 }
@@ -246,7 +329,9 @@ WallContacts BoreWall::Probe(const NetworkSpot& spot, const Vector3d& p_F, const
     const double v_n = v_F.dot(foot.normal);
     const Vector3d step_F = (v_F - v_n * foot.normal) * dt_s;
     const double gap_m = PredictDistance(spot, p_F, foot, step_F) - radius_m;
-    if (gap_m + v_n * dt_s < kContactRange_m) contacts.Add({foot.normal, gap_m, foot.feature});
+    if (gap_m + v_n * dt_s < kContactRange_m) {
+      contacts.Add({foot.normal, gap_m, foot.feature, foot.distance_m - radius_m});
+    }
   }
   return contacts;
 }

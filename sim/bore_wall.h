@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/bore_profile.h"
+#include "sim/feature_line.h"
 #include "sim/joint_wall.h"
 #include "sim/network_spot.h"
 
@@ -15,6 +16,7 @@ struct WallContact {
   Vector3d normal_F;  ///< unit, from the wall to the sphere
   double gap_m = 0;   ///< between the sphere and the wall where the sphere is about to be; negative: overlap
   int feature = -1;   ///< as in WallFoot
+  double present_gap_m = 0;  ///< where the sphere is now
 };
 
 /// The contacts of one step: the few with the smallest gaps.
@@ -39,7 +41,7 @@ class WallContacts {
 
 /// The wall of a network's bores, exact: cylinders around straight pieces, tori around bends, cones
 /// (sim/bore_profile.h), unions of bores with their edges where pipes meet, plates in pipes that are shut
-/// (sim/joint_wall.h).
+/// (sim/joint_wall.h), and the features on it (sim/feature_shape.h).
 ///
 /// Every piece of every pipe has its own frame F, so that the wall is found from the small coordinates across
 /// the pipe and rounding does not grow with the distance from the origin of the drawing L. On a straight, F
@@ -79,6 +81,16 @@ class BoreWall {
     Pose X_LF, X_FL;
     Matrix3d R_LF;
     double bend_radius_m = 0;  // 0 on a straight
+    FeatureLine features;
+  };
+  /// A shape's frame G in the drawing of the pipe it is felt in, and from where to where it reaches there.
+  struct ShapePlace {
+    int pipe = 0;
+    double s_m = 0;
+    double sense = 1;  // -1: the pipe's s runs against x of G
+    Vector3d p_LG;
+    Matrix3d R_LG;
+    ShapeExtent extent;
   };
   /// What happens at one end of a pipe.
   struct End {
@@ -104,6 +116,10 @@ class BoreWall {
   void AddPipe(int pipe);
   End MakeEnd(int pipe, bool at_to) const;
   static Piece MakePiece(const CentrelinePiece& line);
+  void PlaceFeatures();
+  ShapePlace MakePlace(int pipe, const FeatureShape& shape) const;
+  void PlaceInPipe(const ShapePlace& place, PlacedShape shape);
+  void PlaceBeyond(const ShapePlace& place, bool at_to, const PlacedShape& shape);
   const Piece& FindPiece(const NetworkSpot& spot) const;
   const PipeWall& wall(const NetworkSpot& spot) const { return walls_[static_cast<std::size_t>(spot.pipe)]; }
   const End& NearEnd(const NetworkSpot& spot) const;

@@ -18,6 +18,7 @@ struct WallFoot {
   double distance_m = 0;  ///< negative: p lies behind the wall
   Kind kind = Kind::kSheet;
   int feature = -1;  ///< index of the wall feature it belongs to; -1: the wall itself
+  int body = -1;     ///< which of the bodies that stand on the wall it is on; -1: the wall and its edges
 };
 
 /// The nearest few feet of one point, each once.

@@ -1,16 +1,16 @@
 #include "sim/bullet/bullet_world.h"
 
-#include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
-
+#include <algorithm>
 #include <cmath>
 
 #include "base/check.h"
 #include "sim/bullet/convert.h"
+#include "sim/impact.h"
 
 namespace piperun::sim::bullet {
 namespace {
 
-constexpr int kMaxIterations = 60;  // only a ball coming to rest needs more than a handful
+constexpr double kMaxPush_m_s = 1;  // at which a rigid overlap is undone; along a wall there is none
 
 /// Bullet's headers follow BT_USE_DOUBLE_PRECISION, its libraries do not: the float ones link and start
 /// without an error. A function that lives in the library tells them apart.
@@ -32,104 +32,162 @@ btDefaultCollisionConstructionInfo MakeConfiguration() {
 }
 
 btRigidBody::btRigidBodyConstructionInfo BodyInfo(const TubeBall& ball, btSphereShape& shape) {
-  const btScalar inertia = ball.inertia_kg_m2;
-  btRigidBody::btRigidBodyConstructionInfo info(ball.mass_kg, nullptr, &shape, {inertia, inertia, inertia});
-  info.m_friction = ball.friction;
-  return info;
+  return {ball.mass_kg, nullptr, &shape, ToBullet(ball.inertia_B_kg_m2.moments_kg_m2())};
 }
+
+/// Of a ball whose attitude acts on its motion.
+std::optional<Tumbling> MakeTumbling(const TubeBall& ball, const BallStart& start) {
+  if (ball.inertia_B_kg_m2.isotropic() && ball.p_BM_B.isZero(0)) return std::nullopt;
+  return Tumbling(ball.inertia_B_kg_m2, start.X_LB.q, start.w_WB_W);
+}
+
+bool IsImpact(const StepContact& contact) { return contact.closing_speed_m_s > 0; }
 
 }  // namespace
 
 BulletWorld::BulletWorld(const Bore& bore, const TubeBall& ball, const BallStart& start)
     : wall_(bore),
       spot_(start.spot),
-      radius_m_(ball.radius_m),
+      data_(ball),
+      tumbling_(MakeTumbling(ball, start)),
+      p_F_(wall_.X_FL(spot_) * start.X_LB.p),
+      v_step_F_(wall_.X_FL(spot_).q * start.v_WB_W),
+      q_LB_(start.X_LB.q),
       configuration_(MakeConfiguration()),
       dispatcher_(&configuration_),
-      collision_(dispatcher_),
       broadphase_(4),
-      solver_(ball.radius_m, ball.rolling_length_m),
-      world_(&dispatcher_, &broadphase_, &solver_, &configuration_),
       sphere_shape_(ball.radius_m),
-      bore_shape_(ball.compliance),
-      ball_(BodyInfo(ball, sphere_shape_)) {
-  Configure(ball);
-  const Pose& X_FL = wall_.X_FL(spot_);
-  ball_.setWorldTransform(btTransform(btQuaternion::getIdentity(), ToBullet(X_FL * start.X_LB.p)));
-  ball_.setLinearVelocity(ToBullet(X_FL.q * start.v_WB_W));
-  ball_.setAngularVelocity(ToBullet(X_FL.q * start.w_WB_W));
-}
-
-BulletWorld::~BulletWorld() {
-  world_.removeRigidBody(&ball_);
-  world_.removeCollisionObject(&bore_);
-}
-
-void BulletWorld::Configure(const TubeBall& ball) {
-  btContactSolverInfo& solver = world_.getSolverInfo();
-  solver.m_splitImpulse = 0;  // contacts act through velocities alone, so that IMU and trajectory agree
-  solver.m_erp2 = 1;
-  solver.m_numIterations = kMaxIterations;
-  solver.m_leastSquaresResidualThreshold = 1e-28;
-  solver.m_solverMode = SOLVER_USE_WARMSTARTING /* writes impulses back */ | SOLVER_USE_2_FRICTION_DIRECTIONS;
-  world_.getDispatchInfo().m_useContinuous = false;
-  world_.setGravity({0, 0, 0});
-  world_.setForceUpdateAllAabbs(false);
-  world_.getSimulationIslandManager()->setSplitIslands(false);
-
-  ball_.setActivationState(DISABLE_DEACTIVATION);
-  ball_.setDamping(0, 0);
-  ball_.setFlags(0);  // no gyroscopic torque on a sphere
-  ball_.setFriction(ball.friction);
-  world_.addRigidBody(&ball_);
-  bore_.setCollisionShape(&bore_shape_);
-  bore_.setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT);
-  world_.addCollisionObject(&bore_);
+      body_(BodyInfo(ball, sphere_shape_)),
+      solver_(ball.radius_m, ball.rolling_length_m, ball.spinning_length_m),
+      world_(dispatcher_, broadphase_, solver_, configuration_, body_, bore_) {
+  world_.SetMaterial(ball.friction, ball.compliance);
+  body_.setFlags(0);  // gyroscopic torque is ours
+  const Quaterniond& q_FL = wall_.X_FL(spot_).q;
+  const Vector3d v_WM_W = start.v_WB_W + start.w_WB_W.cross(q_LB_ * ball.p_BM_B);
+  body_.setWorldTransform(btTransform(btQuaternion::getIdentity(), ToBullet(p_F_)));
+  body_.setLinearVelocity(ToBullet(q_FL * v_WM_W));
+  body_.setAngularVelocity(ToBullet(q_FL * start.w_WB_W));
 }
 
 void BulletWorld::MoveTo(const SpotMove& move) {
-  const Pose X_LF = wall_.X_LF(spot_), X_GL = wall_.X_FL(move.spot);
+  const Pose &X_LF = wall_.X_LF(spot_), &X_GL = wall_.X_FL(move.spot);
   const bool same_frame = move.spot.pipe == spot_.pipe && move.spot.piece == spot_.piece;
   spot_ = move.spot;
   if (same_frame) return;
   const Vector3d shift_L = move.crossing ? move.crossing->shift_L : Vector3d::Zero();
-  const Vector3d p = X_GL * (X_LF * FromBullet(ball_.getWorldTransform().getOrigin()) + shift_L);
-  const Vector3d v = X_GL.q * (X_LF.q * FromBullet(ball_.getLinearVelocity()));
-  const Vector3d w = X_GL.q * (X_LF.q * FromBullet(ball_.getAngularVelocity()));
-  ball_.setWorldTransform(btTransform(btQuaternion::getIdentity(), ToBullet(p)));
-  ball_.setLinearVelocity(ToBullet(v));
-  ball_.setAngularVelocity(ToBullet(w));
+  const auto turn = [&](const Vector3d& x_F) { return Vector3d(X_GL.q * (X_LF.q * x_F)); };
+  p_F_ = X_GL * (X_LF * p_F_ + shift_L);
+  v_step_F_ = turn(v_step_F_);
+  body_.getWorldTransform().setOrigin(ToBullet(p_F_));
+  body_.setLinearVelocity(ToBullet(turn(FromBullet(body_.getLinearVelocity()))));
+  body_.setAngularVelocity(ToBullet(turn(FromBullet(body_.getAngularVelocity()))));
 }
 
-void BulletWorld::Step(const Vector3d& dv_L, const Vector3d& dw_L, double dt_s) {
-  const Quaterniond& q_FL = wall_.X_FL(spot_).q;
-  // kicked here and not through forces: Bullet's friction does not see torques before the step is over
-  ball_.setLinearVelocity(ball_.getLinearVelocity() + ToBullet(q_FL * dv_L));
-  ball_.setAngularVelocity(ball_.getAngularVelocity() + ToBullet(q_FL * dw_L));
-  const WallContacts contacts = wall_.Probe(spot_, FromBullet(ball_.getWorldTransform().getOrigin()),
-                                            FromBullet(ball_.getLinearVelocity()), radius_m_, dt_s);
-  bore_shape_.set_contacts(contacts);
+void BulletWorld::Step(const BallLoad& load, double kick_s, double dt_s) {
+  const StepPlan plan = Kick(load, kick_s, dt_s);
+  const WallContacts contacts = wall_.Probe(spot_, p_F_, plan.v_step_F, data_.radius_m, dt_s);
   rescues_ += contacts.rescue ? 1 : 0;
-  world_.stepSimulation(dt_s, 0);
-  ReadContacts();
+  AddContacts(contacts, plan);
+  world_.stepSimulation(dt_s);
+  ReadContacts(contacts);
+  Drift(plan);
 }
 
-Vector3d BulletWorld::p_L() const {
-  return wall_.X_LF(spot_) * FromBullet(ball_.getWorldTransform().getOrigin());
-}
-
-Vector3d BulletWorld::v_L() const { return wall_.X_LF(spot_).q * FromBullet(ball_.getLinearVelocity()); }
-
-Vector3d BulletWorld::w_L() const { return wall_.X_LF(spot_).q * FromBullet(ball_.getAngularVelocity()); }
-
-void BulletWorld::ReadContacts() {
-  normal_impulse_N_s_ = 0;
-  for (int i = 0; i < dispatcher_.getNumManifolds(); ++i) {
-    const btPersistentManifold& manifold = *dispatcher_.getManifoldByIndexInternal(i);
-    for (int j = 0; j < manifold.getNumContacts(); ++j) {
-      normal_impulse_N_s_ += manifold.getContactPoint(j).getAppliedImpulse();
-    }
+/// Velocities are kicked here and not through forces: Bullet's friction does not see torques before the step
+/// is over.
+BulletWorld::StepPlan BulletWorld::Kick(const BallLoad& load, double kick_s, double dt_s) {
+  const Quaterniond& q_FL = wall_.X_FL(spot_).q;
+  const Vector3d dv_L = kick_s / data_.mass_kg * load.force_W_N;
+  body_.setLinearVelocity(body_.getLinearVelocity() + ToBullet(q_FL * dv_L));
+  StepPlan plan;
+  plan.dt_s = dt_s;
+  plan.v_step_F = FromBullet(body_.getLinearVelocity());
+  if (tumbling_) {
+    KickTumbling(load, kick_s, plan);
+  } else {
+    const Vector3d dw_L = kick_s / data_.inertia_B_kg_m2.moments_kg_m2().x() * load.torque_W_N_m;
+    body_.setAngularVelocity(body_.getAngularVelocity() + ToBullet(q_FL * dw_L));
   }
+  plan.acceleration_F = (plan.v_step_F - v_step_F_) / kick_s;
+  return plan;
+}
+
+void BulletWorld::KickTumbling(const BallLoad& load, double kick_s, StepPlan& plan) {
+  const Quaterniond& q_FL = wall_.X_FL(spot_).q;
+  const Vector3d lever_L = q_LB_ * data_.p_BM_B;
+  const Vector3d torque_L = load.torque_W_N_m - lever_L.cross(load.force_W_N);  // about M
+  tumbling_->Kick(kick_s * torque_L, q_LB_, plan.dt_s);
+  plan.w_kicked_F = q_FL * tumbling_->w_kicked_W();
+  const Vector3d foreseen_F = q_FL * tumbling_->w_foreseen_W();
+  plan.lever_F = q_FL * lever_L;
+  plan.turning_F =
+      foreseen_F.cross(plan.lever_F) - CalcTurnedBy(plan.dt_s * foreseen_F, plan.lever_F) / plan.dt_s;
+  plan.v_step_F += plan.turning_F - plan.w_kicked_F.cross(plan.lever_F);
+  const Matrix3d R_FI = q_FL.toRotationMatrix() * tumbling_->R_mid() * data_.inertia_B_kg_m2.R_BI();
+  body_.getWorldTransform() = btTransform(MatrixToBullet(R_FI), ToBullet(p_F_ + plan.lever_F));
+  body_.updateInertiaTensor();
+  body_.setAngularVelocity(ToBullet(plan.w_kicked_F));
+}
+
+void BulletWorld::AddContacts(const WallContacts& contacts, const StepPlan& plan) {
+  world_.ClearContacts();
+  solver_.set_slip(ToBullet(-plan.turning_F));
+  closing_speeds_m_s_.fill(0);
+  for (const WallContact& contact : contacts) {
+    const Vector3d& n = contact.normal_F;
+    const double gap_m = AimAtGap(contact, plan) + n.dot(plan.turning_F) * plan.dt_s;
+    world_.AddContact({ToBullet(n), ToBullet(n * -data_.radius_m - plan.lever_F), gap_m});
+  }
+}
+
+/// What the contact closes over the step: the gap, and more where the ball rebounds.
+double BulletWorld::AimAtGap(const WallContact& contact, const StepPlan& plan) {
+  const double dt = plan.dt_s, a_n = contact.normal_F.dot(plan.acceleration_F);
+  const WallApproach approach{contact.present_gap_m, contact.normal_F.dot(plan.v_step_F) - 0.5 * dt * a_n,
+                              a_n + 2 * (contact.gap_m - contact.present_gap_m) / (dt * dt)};
+  double& closing_m_s = closing_speeds_m_s_[static_cast<std::size_t>(world_.contact_count())];
+  if (data_.compliance) {
+    if (contact.present_gap_m > 0) closing_m_s = CalcClosingSpeed_m_s(approach, dt);
+    return contact.gap_m;
+  }
+  closing_m_s = CalcClosingSpeed_m_s(approach, dt);
+  const double rebound_m = CalcReboundGap_m(approach, data_.restitution, dt);
+  return rebound_m > 0 ? contact.gap_m - rebound_m : std::max(contact.gap_m, -kMaxPush_m_s * dt);
+}
+
+void BulletWorld::ReadContacts(const WallContacts& contacts) {
+  const Quaterniond& q_LF = wall_.X_LF(spot_).q;
+  normal_impulse_N_s_ = 0;
+  contacts_ = {};
+  int i = 0;
+  for (const WallContact& contact : contacts) {
+    const double impulse_N_s = world_.NormalImpulse(i);
+    normal_impulse_N_s_ += impulse_N_s;
+    if (impulse_N_s > 0) {
+      contacts_.Add({q_LF * contact.normal_F, q_LF * FromBullet(world_.Impulse(i)),
+                     closing_speeds_m_s_[static_cast<std::size_t>(i)], contact.feature});
+    }
+    ++i;
+  }
+}
+
+void BulletWorld::Drift(const StepPlan& plan) {
+  const Pose& X_LF = wall_.X_LF(spot_);
+  const Vector3d w_F = FromBullet(body_.getAngularVelocity());
+  w_L_ = X_LF.q * w_F;
+  dtheta_B_rad_ = q_LB_.conjugate() * w_L_ * plan.dt_s;
+  v_step_F_ = FromBullet(body_.getLinearVelocity());
+  if (tumbling_) {
+    v_step_F_ -= CalcTurnedBy(plan.dt_s * w_F, plan.lever_F) / plan.dt_s;
+    p_F_ += plan.dt_s * v_step_F_;
+    tumbling_->Finish(X_LF.q * (w_F - plan.w_kicked_F),
+                      std::none_of(contacts_.begin(), contacts_.end(), IsImpact));
+  } else {
+    p_F_ = FromBullet(body_.getWorldTransform().getOrigin());
+  }
+  q_LB_ = (q_LB_ * ExpSO3(dtheta_B_rad_)).normalized();
+  p_L_ = X_LF * p_F_;
+  v_step_L_ = X_LF.q * v_step_F_;
 }
 
 }  // namespace piperun::sim::bullet

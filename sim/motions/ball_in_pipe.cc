@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "sim/ball_mass.h"
 #include "sim/ball_world.h"
 #include "sim/downstream.h"
 #include "sim/fluid_load.h"
@@ -58,14 +59,20 @@ std::vector<double> BoreRadii_m(const MotionContext& context) {
 
 TubeBall MakeTubeBall(const BallParams& ball, const FluidLoadCoefficients& c) {
   const double r = ball.radius_m;
-  std::optional<ContactCompliance> compliance;
-  if (ball.contact_stiffness_N_m) compliance = {*ball.contact_stiffness_N_m, ball.contact_damping_N_s_m};
-  return {r,
-          ball.mass_kg() + c.added_mass_kg,
-          ball.inertia_factor * ball.mass_kg() * r * r,
-          ball.friction,
-          ball.rolling_resistance * r,
-          compliance};
+  const BallMass mass = CalcBallMass(ball, c.added_mass_kg);
+  TubeBall tube_ball;
+  tube_ball.radius_m = r;
+  tube_ball.mass_kg = mass.mass_kg;
+  tube_ball.inertia_B_kg_m2 = mass.inertia_B_kg_m2;
+  tube_ball.friction = ball.friction;
+  tube_ball.rolling_length_m = ball.rolling_resistance * r;
+  tube_ball.spinning_length_m = ball.spinning_resistance * r;
+  tube_ball.restitution = ball.restitution;
+  tube_ball.p_BM_B = mass.p_BM_B;
+  if (ball.contact_stiffness_N_m) {
+    tube_ball.compliance = {*ball.contact_stiffness_N_m, ball.contact_damping_N_s_m};
+  }
+  return tube_ball;
 }
 
 class BallInPipe : public Motion {
@@ -132,7 +139,13 @@ class BallInPipe : public Motion {
       load.drag_W_N *= share;
       if (share < 1) ++held_back_;
     }
-    return {load.Force_W_N(), load.spin_torque_W_N_m};
+    return {load.Force_W_N(), load.spin_torque_W_N_m + CalcWeightTorque_W_N_m(ball.q_WB)};
+  }
+
+  /// Of the weight, about the sphere's centre, where the loads act: r_C x m g.
+  Vector3d CalcWeightTorque_W_N_m(const Quaterniond& q_WB) const {
+    const Vector3d p_BC_W = q_WB * context_.ball.center_of_mass_B_m;
+    return p_BC_W.cross(context_.ball.mass_kg() * context_.gravity_W);
   }
 
   const Pipe& PipeOf(const NetworkSpot& spot) const { return context_.network->pipe(spot.pipe); }

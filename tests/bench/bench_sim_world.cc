@@ -3,12 +3,13 @@
 #include <cmath>
 
 #include "sim/ball_world.h"
+#include "tests/support/features.h"
 #include "tests/support/pipes.h"
 
 namespace piperun::sim {
 namespace {
 
-constexpr TubeBall kBall{0.03, 0.181, 4.5e-5, 0.5, 3e-4};
+const TubeBall kBall{0.03, 0.181, 4.5e-5, 0.5, 3e-4};
 constexpr double kWeight_N = 0.11, kRun_m = 0.045;
 
 BallStart At(const Network& network, int pipe, const Vector3d& p_L, const Vector3d& v_L) {
@@ -16,8 +17,7 @@ BallStart At(const Network& network, int pipe, const Vector3d& p_L, const Vector
 }
 
 /// One step of the ball alone, dragged along by 0.8 m/s without the water's profile.
-void RollAlong(benchmark::State& state, const std::vector<Vector3d>& points) {
-  const testing::BoreNetwork line = testing::MakeBoreLine(points);
+void Roll(benchmark::State& state, const testing::BoreNetwork& line) {
   BallWorld world(line.bore, kBall, Rate(1000), At(line.network, 0, {0.01, 0, -kRun_m}, {0.8, 0, 0}),
                   [](const BallInstant& ball) {
                     const Vector3d u = 0.8 * ball.spot.axis.tangent_W - ball.v_WB_W;
@@ -26,6 +26,10 @@ void RollAlong(benchmark::State& state, const std::vector<Vector3d>& points) {
   for (auto _ : state) world.Step();
   benchmark::DoNotOptimize(world.state().X_LB.p.x());
   state.SetItemsProcessed(state.iterations());
+}
+
+void RollAlong(benchmark::State& state, const std::vector<Vector3d>& points) {
+  Roll(state, testing::MakeBoreLine(points));
 }
 
 /// The same in the mouths of a tee with a branch of its own bore, to and fro, so that it never leaves them.
@@ -43,6 +47,15 @@ void RollInTee(benchmark::State& state, const Vector3d& branch) {
   state.SetItemsProcessed(state.iterations());
 }
 
+/// The same on a straight with a joint every 6 m: gaps of 5 mm, offsets of 1 mm that lead back over 0.3 m.
+void RollOverJoints(benchmark::State& state) {
+  testing::BoreNetwork line = testing::MakeBoreLine({{0, 0, 0}, {100000, 0, 0}});
+  testing::AddFeatures(
+      line.bore, "joint",
+      {{"spacing_m", 6.0}, {"spacing_sd_m", 0.05}, {"gap_sd_m", 0.001}, {"offset_m", 0.001}});
+  Roll(state, line);
+}
+
 std::vector<Vector3d> ZigZag() {
   std::vector<Vector3d> points{Vector3d::Zero()};
   for (int i = 0; i < 2000; ++i)
@@ -51,6 +64,7 @@ std::vector<Vector3d> ZigZag() {
 }
 
 BENCHMARK_CAPTURE(RollAlong, straight, std::vector<Vector3d>{{0, 0, 0}, {100000, 0, 0}});
+BENCHMARK(RollOverJoints);
 BENCHMARK_CAPTURE(RollAlong, bends, ZigZag());
 BENCHMARK_CAPTURE(RollInTee, side_branch, Vector3d(0, 1, 0));
 BENCHMARK_CAPTURE(RollInTee, branch_down, Vector3d(0, 0, -1));
