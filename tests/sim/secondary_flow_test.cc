@@ -317,15 +317,16 @@ struct Vortex {
   }
 };
 
-const std::vector<double> kBores_m{0.075};
-
 TEST(SecondaryFlow, ABallLikeWaterStaysOnItsStreamlineInAVortex) {
   const Network network = testing::MakeLineNetwork({{0, 0, 0}, {20, 0, 0}});
   const Bore bore(network);
   BallParams ball;
   ball.radius_m = 0.01;
   ball.density_kg_m3 = kWater.density_kg_m3;
-  const FluidLoadCoefficients c = CalcFluidLoadCoefficients(ball, {}, kWater, {0, 0, -9.81}, kBores_m);
+  const ForceParams far_from_walls{.rolling_drag = false, .lift = false, .magnus = false};
+  const std::vector<double> bores{network.pipe(0).radius_m()};
+  const FluidLoadCoefficients c =
+      CalcFluidLoadCoefficients(ball, far_from_walls, kWater, {0, 0, -9.81}, bores);
   const Vortex vortex{6, 0.8};
   const auto load = [&](const BallInstant& at) -> BallLoad {
     const FluidLoad f = CalcFluidLoad(c, at.v_WB_W, at.w_WB_W, vortex.At(at.p_LB));
@@ -360,7 +361,10 @@ double FollowStreamline(const Vector3d& release, double duration_s) {
   BallParams ball;
   ball.radius_m = 0.005;
   ball.density_kg_m3 = 1000;
-  const FluidLoadCoefficients c = CalcFluidLoadCoefficients(ball, {}, syrup, {0, 0, -9.81}, kBores_m);
+  const ForceParams far_from_walls{.rolling_drag = false, .lift = false, .magnus = false};
+  const std::vector<double> bores{network.pipe(0).radius_m()};
+  const FluidLoadCoefficients c =
+      CalcFluidLoadCoefficients(ball, far_from_walls, syrup, {0, 0, -9.81}, bores);
   const auto load = [&](const BallInstant& at) -> BallLoad {
     const FluidLoad f = CalcFluidLoad(c, at.v_WB_W, at.w_WB_W, field.Eval(at.spot, at.p_LB, at.time));
     return {f.Force_W_N() - f.pressure_fall_W_N, f.spin_torque_W_N_m};
