@@ -99,6 +99,7 @@ std::string WriteRunJson(const RunResult& result) {
         {"pipes", result.route_pipes},
         {"planned", result.planned_pipes}}},
       {"notes", result.notes},
+      {"warnings", result.warnings},
       {"truth", {{"leaks", leaks}}},
       {"estimators", estimators},
       {"hash", result.file_hashes},
@@ -119,6 +120,7 @@ RunResult LoadRunSummary(const std::string& text) {
     result.route_pipes = json.at("route").at("pipes").get<std::vector<std::string>>();
     result.planned_pipes = json.at("route").at("planned").get<std::vector<std::string>>();
     result.notes = json.at("notes").get<std::vector<std::string>>();
+    result.warnings = json.value("warnings", std::vector<std::string>{});  // older folders have none
     return result;
   } catch (const Json::exception& e) {
     throw InputError(std::string("this is not the run.json of a run: ") + e.what(), "", "run.json");

@@ -72,18 +72,18 @@ class BallInPipe : public Motion {
   Vector3d planned_start_W() const override { return MakeLaunch(context_, 0).X_LB.p; }
   const Way* way() const override { return &way_; }
 
-  std::vector<std::string> notes() const override {
-    std::vector<std::string> notes;
+  std::vector<std::string> warnings() const override {
+    std::vector<std::string> warnings;
     if (held_back_ > 0) {
-      notes.push_back("drag was held back in " + std::to_string(held_back_) +
+      warnings.push_back("drag was held back in " + std::to_string(held_back_) +
                       " steps, too stiff for them (a ball that nearly fills its bore in fast water); raise "
                       "motion.rate_Hz");
     }
     if (const auto rescues = world_.state().rescues; rescues > 0) {
-      notes.push_back("the ball had to be pushed back into the bores in " + std::to_string(rescues) +
+      warnings.push_back("the ball had to be pushed back into the bores in " + std::to_string(rescues) +
                       " steps; pipes there overlap in a way that joints do not");
     }
-    return notes;
+    return warnings;
   }
 
   void Step() override {

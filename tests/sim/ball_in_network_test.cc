@@ -135,8 +135,8 @@ TEST(BallInNetwork, ABallThatNearlyFillsItsBoreStaysInItWhereTheWaterRaces) {
     EXPECT_EQ(motion->status(), MotionStatus::kDeadEnd) << radius_m;
     EXPECT_NEAR(motion->state().chainage_m, 3, 0.026) << radius_m;
     EXPECT_LT(motion->state().v_WB_W.norm(), 0.1) << radius_m;
-    ASSERT_EQ(motion->notes().size(), 1u) << "that drag was held back is said";
-    EXPECT_NE(motion->notes().front().find("raise motion.rate_Hz"), std::string::npos);
+    ASSERT_EQ(motion->warnings().size(), 1u) << "that drag was held back is said";
+    EXPECT_NE(motion->warnings().front().find("raise motion.rate_Hz"), std::string::npos);
   }
 }
 
