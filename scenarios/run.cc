@@ -197,7 +197,6 @@ void DescribeRoute(const Assembly& assembly, RunResult& result) {
   };
   for (const RouteLeg& leg : assembly.pipeline->plan) add(leg.pipe, result.planned_pipes);
   result.notes = assembly.pipeline->notes;
-  for (std::string& note : assembly.motion->notes()) result.notes.push_back(std::move(note));
   if (const sim::Way* way = assembly.motion->way()) {
     for (const sim::WayLeg& leg : way->legs()) {
       // a ball that arrives at a node amid the network has just entered the pipe beyond
@@ -231,6 +230,7 @@ RunResult RunAssembled(const Scenario& scenario, const RunOptions& options, cons
   loop.Run();
   RunResult result = loop.Finish();
   DescribeRoute(*assembly, result);
+  result.warnings = assembly->motion->warnings();
   return result;
 }
 

@@ -41,7 +41,8 @@ struct RunResult {
   double route_length_m = 0;  ///< of the pipes of the way taken
   std::vector<std::string> route_pipes;
   std::vector<std::string> planned_pipes;
-  std::vector<std::string> notes;  ///< what was assumed where the input is silent
+  std::vector<std::string> notes;     ///< what was assumed where the input is silent
+  std::vector<std::string> warnings;  ///< where the motion went beyond what its laws or its step are good for
   std::vector<TrueLeak> leaks;
   std::optional<ContactSummary> contacts;  ///< nothing: no pipes
   std::vector<EstimatorResult> estimators;

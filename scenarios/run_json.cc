@@ -108,6 +108,7 @@ std::string WriteRunJson(const RunResult& result) {
         {"pipes", result.route_pipes},
         {"planned", result.planned_pipes}}},
       {"notes", result.notes},
+      {"warnings", result.warnings},
       {"truth", TruthToJson(result)},
       {"estimators", estimators},
       {"hash", result.file_hashes},
@@ -128,6 +129,7 @@ RunResult LoadRunSummary(const std::string& text) {
     result.route_pipes = json.at("route").at("pipes").get<std::vector<std::string>>();
     result.planned_pipes = json.at("route").at("planned").get<std::vector<std::string>>();
     result.notes = json.at("notes").get<std::vector<std::string>>();
+    result.warnings = json.value("warnings", std::vector<std::string>{});  // older folders have none
     if (const Json::json_pointer contacts("/truth/contacts"); json.contains(contacts)) {
       result.contacts = {json.at(contacts).at("count").get<std::int64_t>(),
                          json.at(contacts).at("largest_impulse_N_s").get<double>()};

@@ -80,8 +80,9 @@ class Motion {
   virtual Vector3d planned_start_W() const { return state().X_WB.p; }
   /// The way taken so far; null for motions that know no pipes.
   virtual const Way* way() const { return nullptr; }
-  /// What a user should know of how the motion was computed; empty when all went as it should.
-  virtual std::vector<std::string> notes() const { return {}; }
+  /// What a user should know of how the motion was computed, a sentence each; empty when all went as it
+  /// should.
+  virtual std::vector<std::string> warnings() const { return {}; }
   /// Collisions that came to their end with the last Step(); those that a run leaves unfinished are not told.
   virtual std::span<const ContactEvent> contact_events() const { return {}; }
 };

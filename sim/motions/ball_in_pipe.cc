@@ -108,18 +108,18 @@ class BallInPipe : public Motion {
   const Way* way() const override { return &way_; }
   std::span<const ContactEvent> contact_events() const override { return contact_events_.ended(); }
 
-  std::vector<std::string> notes() const override {
-    std::vector<std::string> notes = ranges_.Sentences();
+  std::vector<std::string> warnings() const override {
+    std::vector<std::string> warnings = ranges_.Sentences();
     if (held_back_ > 0) {
-      notes.push_back("drag was held back in " + std::to_string(held_back_) +
+      warnings.push_back("drag was held back in " + std::to_string(held_back_) +
                       " steps, too stiff for them (a ball that nearly fills its bore in fast water); raise "
                       "motion.rate_Hz");
     }
     if (const auto rescues = world_.state().rescues; rescues > 0) {
-      notes.push_back("the ball had to be pushed back into the bores in " + std::to_string(rescues) +
+      warnings.push_back("the ball had to be pushed back into the bores in " + std::to_string(rescues) +
                       " steps; pipes there overlap in a way that joints do not");
     }
-    return notes;
+    return warnings;
   }
 
   void Step() override {
