@@ -96,7 +96,7 @@ void ContactEventDetector::Add(const StepContact& contact, const ContactStep& st
   if (open.last_strike != step.time) open.step_impulse_W_N_s.setZero();
   open.step_impulse_W_N_s += contact.impulse_W_N_s;
   event.peak_force_N = std::max(event.peak_force_N, open.step_impulse_W_N_s.norm() / step.dt_s);
-  event.duration_s = Seconds(step.time - event.begin) + step.dt_s;
+  event.duration_s = Seconds(step.time - event.begin + FromSeconds(step.dt_s));
   open.normal_W = contact.normal_W;
   open.last_strike = step.time;
 }
