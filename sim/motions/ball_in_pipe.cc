@@ -10,6 +10,7 @@
 #include "sim/force_params.h"
 #include "sim/launch.h"
 #include "sim/motion.h"
+#include "sim/step_resolution.h"
 
 namespace piperun::sim {
 namespace {
@@ -23,20 +24,18 @@ struct BallInPipeParams : ParamsOf<BallInPipeParams> {
   StreamParams stream;
 
   void Visit(ParamVisitor& v) override {
-    v.Number({"rate_Hz", "Steps of the physics per second."}, Range::Between(100, 10000), rate_Hz);
+    v.Number({"rate_Hz", "Steps of the physics per second."}, Range::Between(100, kMaxStepRate_Hz), rate_Hz);
     v.Struct({"forces", "Which laws act on the ball."}, forces);
     v.Struct({"stream", "The flow in a pipe beyond its bulk speed."}, stream);
   }
 };
 
-/// The share of the drag F that a step can resolve, from z = 2F dt/(M |slip|): how much of the slip it would
-/// take off, twice. The world's leapfrog with extrapolated velocities is stable for z < 1 (amplification
-/// matrix [1-z, -z/2; -z, -z/2]). A ball that nearly fills its bore, in fast water, goes beyond: drag is then
-/// held to z < 0.9. Up to z = 1/2 nothing is changed; a usual run has z = 1e-3.
-double CalcResolvedShare(double z) {
-  constexpr double kFree = 0.5, kMost = 0.9;
-  if (z <= kFree) return 1;
-  return (kFree + (kMost - kFree) * -std::expm1(-(z - kFree) / (kMost - kFree))) / z;
+/// Refuses a contact that is too short for the steps.
+StepResolution WatchSteps(const BallParams& ball, const FluidLoadCoefficients& c, Rate rate) {
+  if (!ball.contact_stiffness_N_m) return {rate, 0};
+  const double mass_kg = ball.mass_kg() + c.added_mass_kg;
+  RequireResolvedContact(*ball.contact_stiffness_N_m, mass_kg, rate);
+  return {rate, CalcContactPhase_rad(*ball.contact_stiffness_N_m, mass_kg, rate)};
 }
 
 TubeBall MakeTubeBall(const BallParams& ball, const FluidLoadCoefficients& c) {
@@ -59,6 +58,7 @@ class BallInPipe : public Motion {
         way_(*context.network, context.launch),
         field_(*context.bore, *context.flow, context.water, context.gravity_W.norm(), context.ball.radius_m),
         coefficients_(CalcFluidLoadCoefficients(context.ball, context.water, context.gravity_W)),
+        steps_(WatchSteps(context.ball, coefficients_, rate_)),
         world_(*context.bore, MakeTubeBall(context.ball, coefficients_), rate_,
                MakeLaunch(context, context.lateral_sd_m),
                [this](const BallInstant& ball) { return EvalLoad(ball); }) {
@@ -73,15 +73,10 @@ class BallInPipe : public Motion {
   const Way* way() const override { return &way_; }
 
   std::vector<std::string> warnings() const override {
-    std::vector<std::string> warnings;
-    if (held_back_ > 0) {
-      warnings.push_back("drag was held back in " + std::to_string(held_back_) +
-                      " steps, too stiff for them (a ball that nearly fills its bore in fast water); raise "
-                      "motion.rate_Hz");
-    }
+    std::vector<std::string> warnings = steps_.Warnings();
     if (const auto rescues = world_.state().rescues; rescues > 0) {
       warnings.push_back("the ball had to be pushed back into the bores in " + std::to_string(rescues) +
-                      " steps; pipes there overlap in a way that joints do not");
+                         " steps; pipes there overlap in a way that joints do not");
     }
     return warnings;
   }
@@ -90,6 +85,8 @@ class BallInPipe : public Motion {
     world_.Step();
     if (world_.state().crossing) way_.Cross(*world_.state().crossing);
     Publish();
+    const BallState& ball = world_.state();
+    steps_.AddMotion(ball.w_WB_W.norm(), ball.v_WB_W.norm(), ball.spot.axis.curvature_W.norm());
     UpdateStatus();
   }
 
@@ -102,10 +99,7 @@ class BallInPipe : public Motion {
     const double slip_m_s = (water_.velocity_W - ball.v_WB_W).norm();
     const double inertia_kg = context_.ball.mass_kg() + coefficients_.added_mass_kg;
     if (slip_m_s > 0) {
-      const double share =
-          CalcResolvedShare(2 * load.drag_W_N.norm() * rate_.Period_s() / (inertia_kg * slip_m_s));
-      load.drag_W_N *= share;
-      if (share < 1) ++held_back_;
+      load.drag_W_N *= steps_.HoldDrag(2 * load.drag_W_N.norm() * rate_.Period_s() / (inertia_kg * slip_m_s));
     }
     return {load.Force_W_N(), load.spin_torque_W_N_m};
   }
@@ -193,7 +187,7 @@ class BallInPipe : public Motion {
   FluidLoadCoefficients coefficients_;
   WaterAtBall water_;  // where and when the world evaluated the loads last: at its present state
   bool too_large_ = false;
-  std::int64_t held_back_ = 0;  // steps whose drag was more than they can follow
+  StepResolution steps_;
   BallWorld world_;
   TruthState state_;
   MotionStatus status_ = MotionStatus::kRunning;
