@@ -230,7 +230,8 @@ RunResult RunAssembled(const Scenario& scenario, const RunOptions& options, cons
   loop.Run();
   RunResult result = loop.Finish();
   DescribeRoute(*assembly, result);
-  result.warnings = assembly->motion->warnings();
+  if (assembly->pipeline) result.warnings = assembly->pipeline->warnings;
+  for (std::string& warning : assembly->motion->warnings()) result.warnings.push_back(std::move(warning));
   return result;
 }
 

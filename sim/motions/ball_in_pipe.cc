@@ -13,6 +13,7 @@
 #include "sim/launch.h"
 #include "sim/load_ranges.h"
 #include "sim/motion.h"
+#include "sim/step_resolution.h"
 #include "sim/stream_fluctuations.h"
 
 namespace piperun::sim {
@@ -28,7 +29,7 @@ struct BallInPipeParams : ParamsOf<BallInPipeParams> {
   StreamParams stream;
 
   void Visit(ParamVisitor& v) override {
-    v.Number({"rate_Hz", "Steps of the physics per second."}, Range::Between(100, 10000), rate_Hz);
+    v.Number({"rate_Hz", "Steps of the physics per second."}, Range::Between(100, kMaxStepRate_Hz), rate_Hz);
     v.Number({"contact_event_speed_m_s",
               "Closing speed above which a contact is a collision; what carries the ball comes on top."},
              Range::Between(1e-4, 10), contact_event_speed_m_s);
@@ -37,14 +38,12 @@ struct BallInPipeParams : ParamsOf<BallInPipeParams> {
   }
 };
 
-/// The share of the drag F that a step can resolve, from z = 2F dt/(M |slip|): how much of the slip it would
-/// take off, twice. The world's leapfrog with extrapolated velocities is stable for z < 1 (amplification
-/// matrix [1-z, -z/2; -z, -z/2]). A ball that nearly fills its bore, in fast water, goes beyond: drag is then
-/// held to z < 0.9. Up to z = 1/2 nothing is changed; a usual run has z = 1e-3.
-double CalcResolvedShare(double z) {
-  constexpr double kFree = 0.5, kMost = 0.9;
-  if (z <= kFree) return 1;
-  return (kFree + (kMost - kFree) * -std::expm1(-(z - kFree) / (kMost - kFree))) / z;
+/// Refuses a contact that is too short for the steps.
+StepResolution WatchSteps(const BallParams& ball, const FluidLoadCoefficients& c, Rate rate) {
+  if (!ball.contact_stiffness_N_m) return {rate, 0};
+  const double mass_kg = ball.mass_kg() + c.added_mass_kg;
+  RequireResolvedContact(*ball.contact_stiffness_N_m, mass_kg, rate);
+  return {rate, CalcContactPhase_rad(*ball.contact_stiffness_N_m, mass_kg, rate)};
 }
 
 /// Share of a sudden change of the water's velocity that the ball takes part in without drag (chi,
@@ -93,6 +92,7 @@ class BallInPipe : public Motion {
         ranges_(coefficients_, context.water, FindProfileLaw(params.stream.profile)),
         fluctuations_(params.stream, context.seed, context.run, rate_, 2 * context.ball.radius_m,
                       CalcResponse(context.ball, coefficients_), context.water.kinematic_viscosity_m2_s),
+        steps_(WatchSteps(context.ball, coefficients_, rate_)),
         world_(*context.bore, MakeTubeBall(ApplyForces(context.ball, params.forces), coefficients_), rate_,
                MakeLaunch(context, context.lateral_sd_m),
                [this](const BallInstant& ball) { return load_ = EvalLoad(ball); }),
@@ -109,15 +109,12 @@ class BallInPipe : public Motion {
   std::span<const ContactEvent> contact_events() const override { return contact_events_.ended(); }
 
   std::vector<std::string> warnings() const override {
-    std::vector<std::string> warnings = ranges_.Sentences();
-    if (held_back_ > 0) {
-      warnings.push_back("drag was held back in " + std::to_string(held_back_) +
-                      " steps, too stiff for them (a ball that nearly fills its bore in fast water); raise "
-                      "motion.rate_Hz");
-    }
+    std::vector<std::string> warnings = steps_.Warnings();
+    const std::vector<std::string> excursions = ranges_.Sentences();
+    warnings.insert(warnings.end(), excursions.begin(), excursions.end());
     if (const auto rescues = world_.state().rescues; rescues > 0) {
       warnings.push_back("the ball had to be pushed back into the bores in " + std::to_string(rescues) +
-                      " steps; pipes there overlap in a way that joints do not");
+                         " steps; pipes there overlap in a way that joints do not");
     }
     return warnings;
   }
@@ -128,6 +125,8 @@ class BallInPipe : public Motion {
     if (world_.state().crossing) way_.Cross(*world_.state().crossing);
     Publish();
     DetectContactEvents();
+    const BallState& ball = world_.state();
+    steps_.AddMotion(ball.w_WB_W.norm(), ball.v_WB_W.norm(), ball.spot.axis.curvature_W.norm());
     UpdateStatus();
   }
 
@@ -141,10 +140,8 @@ class BallInPipe : public Motion {
     ranges_.Feed(load.numbers, water_);
     const double slip_m_s = (water_.velocity_W - ball.v_WB_W).norm();
     if (slip_m_s > 0) {
-      const double share =
-          CalcResolvedShare(2 * load.drag_W_N.norm() * rate_.Period_s() / (InertialMass_kg() * slip_m_s));
-      load.drag_W_N *= share;
-      if (share < 1) ++held_back_;
+      load.drag_W_N *=
+          steps_.HoldDrag(2 * load.drag_W_N.norm() * rate_.Period_s() / (InertialMass_kg() * slip_m_s));
     }
     return {load.Force_W_N(), load.spin_torque_W_N_m + CalcWeightTorque_W_N_m(ball.q_WB)};
   }
@@ -251,8 +248,8 @@ class BallInPipe : public Motion {
   StreamFluctuations fluctuations_;
   WaterAtBall water_;  // where and when the world evaluated the loads last: at its present state
   bool too_large_ = false;
-  std::int64_t held_back_ = 0;  // steps whose drag was more than they can follow
-  BallLoad load_;               // what the world was given last
+  BallLoad load_;  // what the world was given last
+  StepResolution steps_;
   BallWorld world_;
   ContactEventDetector contact_events_;
   TruthState state_;
