@@ -1,6 +1,9 @@
 // Balls that the water carries: published speeds, and which way they must change.
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -13,19 +16,19 @@
 namespace piperun::scenarios::physics {
 namespace {
 
-/// A straight pipe, level or upright, with water of 15 C in it.
+/// A straight pipe, rising with a slope, with water of 15 C in it.
 struct CarriedCase {
   double bore_m = 0.03175;
   double diameter_ratio = 0.6;
   double relative_density = 1.2;
   double water_speed_m_s = 1.2;
-  bool upright = false;
+  double slope_rad = 0;
   double length_m = 40;
 };
 
 Scenario MakeScenario(const CarriedCase& c) {
-  const std::string end =
-      c.upright ? "[0, 0, " + FormatNumber(c.length_m) + "]" : "[" + FormatNumber(c.length_m) + ", 0, 0]";
+  const std::string end = "[" + FormatNumber(c.length_m * std::cos(c.slope_rad)) + ", 0, " +
+                          FormatNumber(c.length_m * std::sin(c.slope_rad)) + "]";
   const double flow_m3_s = c.water_speed_m_s * std::numbers::pi / 4 * c.bore_m * c.bore_m;
   const double density = c.relative_density * CalcWater(15).density_kg_m3;
   return ParseScenario(
@@ -95,12 +98,26 @@ void CheckTrends(Checks& checks) {
   note("v/U at d/D 0.3, 0.5, 0.7", by_size, Rises(by_size), "rises: reaches into faster water");
 }
 
+/// The reference ball in a riser: the water must reach its terminal speed where it is, between the axis (1.17
+/// U for d/D = 0.4) and the wall (1.03 U).
+void CheckRiser(Checks& checks) {
+  CarriedCase riser{0.15, 0.4, 1.1, 0, std::numbers::pi / 2, 5};
+  const double terminal_m_s = 0.34;
+  riser.water_speed_m_s = 0.9 * terminal_m_s / 1.17;
+  checks.Near("speed of a ball in a riser, water 10 % slower than holds it on the axis",
+              CalcSpeedRatio(riser), 0, 0, "drag < weight: it stays below");
+  riser.water_speed_m_s = 1.1 * terminal_m_s / 1.03;
+  checks.AtLeast("the same over the water's, 10 % faster than holds it at the wall", CalcSpeedRatio(riser),
+                 0.05, "drag > weight: it rises");
+}
+
 }  // namespace
 
 void CheckCarried(const ReproduceOptions&, ReproduceReport& report) {
   Checks checks(report, "carried");
   CheckEllis(checks);
   CheckTrends(checks);
+  CheckRiser(checks);
 }
 
 }  // namespace piperun::scenarios::physics

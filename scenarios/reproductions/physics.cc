@@ -9,8 +9,9 @@ namespace piperun::scenarios {
 namespace {
 
 using Group = void (*)(const ReproduceOptions&, ReproduceReport&);
-constexpr std::array<Group, 4> kGroups{physics::CheckContact, physics::CheckOrder, physics::CheckCarried,
-                                       physics::CheckClosure};
+constexpr std::array<Group, 7> kGroups{physics::CheckDrag,      physics::CheckFall,    physics::CheckContact,
+                                       physics::CheckOrder,     physics::CheckCarried, physics::CheckClosure,
+                                       physics::CheckTurbulence};
 
 ReproduceReport Study(const ReproduceOptions& options) {
   std::array<ReproduceReport, kGroups.size()> parts;
