@@ -68,6 +68,7 @@ class StepContacts {
   void Add(const StepContact& contact) {
     if (size_ < kCapacity) contacts_[size_++] = contact;
   }
+  void Clear() { size_ = 0; }
   const StepContact* begin() const { return contacts_.data(); }
   const StepContact* end() const { return contacts_.data() + size_; }
   std::size_t size() const { return size_; }

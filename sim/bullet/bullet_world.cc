@@ -183,7 +183,7 @@ TubeWorld::Contact BulletWorld::AimSoftly(const WallContact& contact, double dt_
 void BulletWorld::ReadContacts() {
   const Quaterniond& q_LF = wall_.X_LF(spot_).q;
   normal_impulse_N_s_ = 0;
-  contacts_ = {};
+  contacts_.Clear();
   for (int i = 0; i < world_.contact_count(); ++i) {
     const double impulse_N_s = world_.NormalImpulse(i);
     normal_impulse_N_s_ += impulse_N_s;

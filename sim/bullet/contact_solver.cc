@@ -3,6 +3,24 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 namespace piperun::sim::bullet {
+namespace {
+
+/// Bullet's step of projected Gauss and Seidel for one row, without the zeros of a wall that does not move.
+/// Returns the change of the velocity along the row.
+btScalar Resolve(const btSolverConstraint& row, btSolverBody& body) {
+  const btScalar speed = row.m_contactNormal1.dot(body.internalGetDeltaLinearVelocity()) +
+                         row.m_relpos1CrossNormal.dot(body.internalGetDeltaAngularVelocity());
+  const btScalar before = row.m_appliedImpulse;
+  const btScalar change = row.m_rhs - before * row.m_cfm - speed * row.m_jacDiagABInv;
+  const btScalar wanted = before + change;
+  const bool free = wanted >= row.m_lowerLimit && wanted <= row.m_upperLimit;
+  row.m_appliedImpulse = free ? wanted : wanted < row.m_lowerLimit ? row.m_lowerLimit : row.m_upperLimit;
+  const btScalar given = free ? change : row.m_appliedImpulse - before;
+  body.internalApplyImpulse(row.m_contactNormal1 * body.internalGetInvMass(), row.m_angularComponentA, given);
+  return given * (1 / row.m_jacDiagABInv);
+}
+
+}  // namespace
 
 btScalar ContactSolver::solveGroup(btCollisionObject** bodies, int, btPersistentManifold** manifolds,
                                    int manifold_count, btTypedConstraint**, int,
@@ -51,7 +69,7 @@ btScalar ContactSolver::Iterate() {
   btScalar residual = 0;
   const auto count = [&](btScalar change) { residual = btMax(residual, change * change); };
   for (int i = 0; i < m_tmpSolverContactConstraintPool.size(); ++i) {
-    count(resolveSingleConstraintRowLowerLimit(body(), wall(), m_tmpSolverContactConstraintPool[i]));
+    count(Resolve(m_tmpSolverContactConstraintPool[i], body()));
   }
   for (int i = 0; i < m_tmpSolverContactFrictionConstraintPool.size(); ++i) {
     btSolverConstraint& row = m_tmpSolverContactFrictionConstraintPool[i];
@@ -59,7 +77,7 @@ btScalar ContactSolver::Iterate() {
     if (!(normal_impulse > 0)) continue;
     row.m_lowerLimit = -(row.m_friction * normal_impulse);
     row.m_upperLimit = row.m_friction * normal_impulse;
-    count(resolveSingleConstraintRowGeneric(body(), wall(), row));
+    count(Resolve(row, body()));
   }
   for (int i = 0; i < resistances_.size(); ++i) {
     residual = btMax(residual, Resist(m_tmpSolverContactConstraintPool[i], resistances_[i]));

@@ -9,9 +9,9 @@ namespace piperun::sim::bullet {
 /// Bullet's sequential impulses for one body in front of walls that do not move, with resistance to rolling
 /// and spinning.
 ///
-/// Rows, row solver and order are Bullet's. What its solver does besides for many bodies and joints (islands
-/// and joints, orders of rows, split impulses, profiling) has nothing to do here and is left out: same bits
-/// at a third of the cost.
+/// Rows, their order and the arithmetic of their iteration are Bullet's, to the bit. What its solver does
+/// besides for many bodies and joints (islands, orders of rows, split impulses, profiling) has nothing to do
+/// here and is left out.
 ///
 /// Rolling and spinning at a contact: sim/bullet/contact_resistance.h.
 class ContactSolver : public btSequentialImpulseConstraintSolver {

@@ -16,8 +16,8 @@ BallStart At(const Network& network, int pipe, const Vector3d& p_L, const Vector
 }
 
 /// One step of the ball alone, dragged along by 0.8 m/s without the water's profile.
-void Roll(benchmark::State& state, const testing::BoreNetwork& line) {
-  BallWorld world(line.bore, kBall, Rate(1000), At(line.network, 0, {0.01, 0, -kRun_m}, {0.8, 0, 0}),
+void Roll(benchmark::State& state, const testing::BoreNetwork& line, const TubeBall& ball = kBall) {
+  BallWorld world(line.bore, ball, Rate(1000), At(line.network, 0, {0.01, 0, -kRun_m}, {0.8, 0, 0}),
                   [](const BallInstant& ball) {
                     const Vector3d u = 0.8 * ball.spot.axis.tangent_W - ball.v_WB_W;
                     return BallLoad{0.5 * u - Vector3d(0, 0, kWeight_N), Vector3d::Zero()};
@@ -27,8 +27,8 @@ void Roll(benchmark::State& state, const testing::BoreNetwork& line) {
   state.SetItemsProcessed(state.iterations());
 }
 
-void RollAlong(benchmark::State& state, const std::vector<Vector3d>& points) {
-  Roll(state, testing::MakeBoreLine(points));
+void RollAlong(benchmark::State& state, const std::vector<Vector3d>& points, const TubeBall& ball = kBall) {
+  Roll(state, testing::MakeBoreLine(points), ball);
 }
 
 /// The same in the mouths of a tee with a branch of its own bore, to and fro, so that it never leaves them.
@@ -74,9 +74,19 @@ std::vector<Vector3d> ZigZag() {
   return points;
 }
 
+/// Attitude acts on the motion of this one.
+TubeBall EccentricBall() {
+  TubeBall ball = kBall;
+  ball.inertia_B_kg_m2 = Matrix3d(Vector3d(5e-5, 4e-5, 6e-5).asDiagonal());
+  ball.p_BM_B = {0, 0, -1e-3};
+  ball.spinning_length_m = 3e-4;
+  return ball;
+}
+
 BENCHMARK_CAPTURE(RollAlong, straight, std::vector<Vector3d>{{0, 0, 0}, {100000, 0, 0}});
 BENCHMARK(RollOverJoints);
 BENCHMARK_CAPTURE(RollAlong, bends, ZigZag());
+BENCHMARK_CAPTURE(RollAlong, eccentric, std::vector<Vector3d>{{0, 0, 0}, {100000, 0, 0}}, EccentricBall());
 BENCHMARK_CAPTURE(RollInTee, side_branch, Vector3d(0, 1, 0));
 BENCHMARK_CAPTURE(RollInTee, branch_down, Vector3d(0, 0, -1));
 
