@@ -157,7 +157,7 @@ class CommandLine(unittest.TestCase):
 
     def test_warnings_stand_in_run_json_and_on_the_screen(self):
         # a ball of 40 mm at 1.1 m/s spins at 55 rad/s: half a radian in steps of 10 ms
-        text = (SCENARIO.replace("inlet_L_s: 8.5", "inlet_L_s: 20") +
+        text = (SCENARIO.replace("inlet_L_s: 8.5", "inlet_L_s: 20").replace("rate_Hz: 400", "rate_Hz: 100") +
                 "ball: {radius_mm: 20}\nmotion: {kind: ball_in_pipe, rate_Hz: 100}\n")
         done = piperun("run", self.scenario(text), "--out", self.out)
         self.assertEqual(done.returncode, 0, done.stderr)
