@@ -39,7 +39,7 @@ void RequireResolvedContact(double stiffness_N_m, double mass_kg, Rate rate) {
                        FormatFigure(mass_kg) + " kg (with the water that moves along) back within " +
                        FormatFigure(std::numbers::pi / phase) +
                        " steps of the physics; allowed: 3 or more, up to " +
-                       FormatFigure(per_step * per_step * mass_kg) + " N/m at this rate. " +
+                       FormatFigure(per_step * per_step * mass_kg) + " N/m at this rate; " +
                        Advise(rate, phase, kMostContactPhase_rad) + ", or let the contact be rigid",
                    "ball.contact_stiffness_N_m");
 }
@@ -70,7 +70,8 @@ std::vector<std::string> StepResolution::Warnings() const {
   if (spin_per_step_rad_ > kMaxSpinPerStep_rad) {
     warn("spin: the ball turned by up to " + FormatFigure(spin_per_step_rad_) + " rad in a step; beyond " +
              FormatFigure(kMaxSpinPerStep_rad) +
-             " rad its IMU reads gravity and centripetal acceleration more than 0.2 % wrong",
+             " rad what turns with it (a mass off its centre, the levers of sensors) is off by more than 0.2 "
+             "%",
          spin_per_step_rad_, kMaxSpinPerStep_rad);
   }
   if (turn_per_step_rad_ > kMaxTurnPerStep_rad) {

@@ -141,6 +141,31 @@ class CommandLine(unittest.TestCase):
         shown = self.scenario(piperun("scenario", "show", "quickstart").stdout, "shown.yaml")
         self.assertEqual(piperun("scenario", "validate", shown).returncode, 0)
 
+    def test_validate_finds_physics_without_meaning(self):
+        base = SCENARIO + "ball: {preset: foam_2.5in, contact_stiffness_N_m: 20000}\n"
+        line = base.count("\n")
+        for text, parts in [
+                (base + "motion: {kind: ball_in_pipe, rate_Hz: 100}\n",
+                 [f":{line}: ball.contact_stiffness_N_m", "within 2.16 steps", "raise motion.rate_Hz to 146"]),
+                (SCENARIO + "ball: {radius_mm: 80}\n", [f":{line}: ball.radius_m", "(0, 0.07125] m"]),
+                (SCENARIO + "ball: {density_kg_m3: -5}\n", [f":{line}: ball.density_kg_m3", "out of range"]),
+                (SCENARIO + "ball: {preset: foam_2.5}\n", [f":{line}: ball.preset", "did you mean 'foam_2.5in'?"])]:
+            done = piperun("scenario", "validate", self.scenario(text))
+            self.assertEqual(done.returncode, 2, text)
+            for part in parts:
+                self.assertIn(part, done.stderr)
+
+    def test_warnings_stand_in_run_json_and_on_the_screen(self):
+        # a ball of 40 mm at 1.1 m/s spins at 55 rad/s: half a radian in steps of 10 ms
+        text = (SCENARIO.replace("inlet_L_s: 8.5", "inlet_L_s: 20").replace("rate_Hz: 400", "rate_Hz: 100") +
+                "ball: {radius_mm: 20}\nmotion: {kind: ball_in_pipe, rate_Hz: 100}\n")
+        done = piperun("run", self.scenario(text), "--out", self.out)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        warnings = json.loads((self.out / "run.json").read_text())["warnings"]
+        self.assertTrue(any(w.startswith("spin: ") and "raise motion.rate_Hz to" in w for w in warnings), warnings)
+        for warning in warnings:
+            self.assertIn("Warning: " + warning, done.stdout)
+
     def test_scenario_new_on_an_epanet_file(self):
         new = self.folder / "mine.yaml"
         start = ("scenario", "new", new, "--inp", TOWN)
