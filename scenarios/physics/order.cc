@@ -49,7 +49,7 @@ void CheckOrder(const ReproduceOptions&, ReproduceReport& report) {
   checks.AtLeast("rocking, period",
                  CalcOrder(100, [](double rate_Hz) { return RockFor(10, 0.5, rate_Hz, 0).period_s; }), 1.9,
                  "leapfrog: 2");
-  checks.AtLeast("rolling and rocking against rolling resistance", CalcOrder(4000, RollAndRock_rad), 0.95,
+  checks.AtLeast("rolling and rocking against rolling resistance", CalcOrder(1000, RollAndRock_rad), 0.95,
                  "friction on a turning normal: 1");
 }
 

@@ -4,7 +4,8 @@
 
 namespace piperun::sim::bullet {
 
-ContactResistance::ContactResistance(const btRigidBody& body, const btVector3& normal) : normal_(normal) {
+ContactResistance::ContactResistance(const btRigidBody& body, const btVector3& normal)
+    : normal_(normal), w_before_(body.getAngularVelocity()) {
   const btVector3& local = body.getInvInertiaDiagLocal();
   isotropic_ = local.x() == local.y() && local.x() == local.z();
   rate_ = local.x();
@@ -19,12 +20,13 @@ ContactResistance::ContactResistance(const btRigidBody& body, const btVector3& n
 }
 
 /// Stopping takes the whole inertia; where that is more than allowed, steps of the gradient find the impulse
-/// that opposes w_t.
+/// that opposes the rolling in the middle of the kick, which is that at the instant.
 btVector3 ContactResistance::ResistRolling(const btVector3& w, btScalar limit) {
   const btVector3 w_t = w - normal_ * normal_.dot(w);
   btVector3 wanted = rolling_ - CalcStopping(w_t);
   if (wanted.length2() > limit * limit) {
-    wanted = rolling_ - w_t * inverse_rate_;
+    const btVector3 middle = 0.5 * (w + w_before_);
+    wanted = rolling_ - (middle - normal_ * normal_.dot(middle)) * inverse_rate_;
     const btScalar length = wanted.length();
     if (length > limit) wanted *= limit / length;
   }

@@ -29,6 +29,7 @@ class ContactResistance {
   btVector3 CalcStopping(const btVector3& w_t) const;
 
   btVector3 normal_;
+  btVector3 w_before_;          // before the wall acts
   btVector3 rolling_{0, 0, 0};  // q so far
   btScalar spinning_ = 0;       // q_n so far
   bool isotropic_;

@@ -5,13 +5,14 @@
 #include "sim/motion.h"
 #include "sim/stream_fluctuations.h"
 #include "tests/support/pipes.h"
+#include "tests/support/set_params.h"
 
 namespace piperun::sim {
 namespace {
 
 /// One step of a ball in 0.8 m/s of water with all its loads, in a straight pipe and in one bend after
-/// another.
-void WorldStep(benchmark::State& state, const std::vector<Vector3d>& points) {
+/// another; with turbulence it is everything that the physics has.
+void WorldStep(benchmark::State& state, const std::vector<Vector3d>& points, bool turbulence) {
   const testing::PipeLine line = testing::MakePipeLine(points, {.roughness_m = 1e-5});
   const double flow_m3_s = 0.8 * line.network.pipe(0).area_m2();
   const WaterProperties water = CalcWater(15);
@@ -27,7 +28,10 @@ void WorldStep(benchmark::State& state, const std::vector<Vector3d>& points) {
   context.retrieve_node = 1;
   for (const MotionKind& kind : MotionKinds()) {
     if (kind.name != "ball_in_pipe") continue;
-    const auto motion = kind.make(*kind.make_params(), context);
+    const std::unique_ptr<Params> params = kind.make_params();
+    testing::ParamWriter writer({{"stream.turbulence.on", turbulence}});
+    params->Visit(writer);
+    const auto motion = kind.make(*params, context);
     for (auto _ : state) motion->Step();
     benchmark::DoNotOptimize(motion->state().X_WB.p.x());
   }
@@ -95,8 +99,11 @@ void SixNormals(benchmark::State& state) {
 }
 BENCHMARK(SixNormals);
 
-BENCHMARK_CAPTURE(WorldStep, straight, std::vector<Vector3d>{{0, 0, 0}, {100000, 0, 0}});
-BENCHMARK_CAPTURE(WorldStep, bends, ZigZag());
+const std::vector<Vector3d> kStraight{{0, 0, 0}, {100000, 0, 0}};
+BENCHMARK_CAPTURE(WorldStep, straight, kStraight, false);
+BENCHMARK_CAPTURE(WorldStep, bends, ZigZag(), false);
+BENCHMARK_CAPTURE(WorldStep, straight_turbulent, kStraight, true);
+BENCHMARK_CAPTURE(WorldStep, bends_turbulent, ZigZag(), true);
 
 }  // namespace
 }  // namespace piperun::sim

@@ -140,7 +140,9 @@ TEST(BallChecks, ValidationFindsWhatPhysicsCannotMean) {
   EXPECT_EQ(refused("{mass_kg: 0}").key_path(), "ball.mass_kg");
   EXPECT_EQ(refused("{foam_thickness_mm: 31}").key_path(), "ball.foam_thickness_m");
   EXPECT_EQ(refused("{center_of_mass_m: [0, 0.03, 0]}").key_path(), "ball.center_of_mass_m");
-  const InputError foam = refused("{preset: foam_2.5in, contact_stiffness_N_m: 2e4}", {"motion.rate_Hz=100"});
+  const InputError foam =
+      refused("{preset: foam_2.5in, added_mass_coefficient: 0.62, contact_stiffness_N_m: 2e4}",
+              {"motion.rate_Hz=100"});
   EXPECT_EQ(foam.key_path(), "ball.contact_stiffness_N_m");
   EXPECT_FALSE(foam.where().empty());
   // w_c = sqrt(2e4/0.9457) = 145.4 rad/s

@@ -48,10 +48,10 @@ TEST_F(ContactLogTest, HasTheDocumentedColumns) {
 }
 
 TEST_F(ContactLogTest, NamesFeaturesByTheirIds) {
-  for (const int feature : {-1, 0, 5}) log_.Add(MakeEvent(10 + feature, feature));
+  for (const int feature : {-1, 0, 1}) log_.Add(MakeEvent(10 + feature, feature));
   log_.Close();
   const std::string text = Text();
-  for (const char* end : {"250,wall\n", "250,J1\n", "250,5\n"}) {
+  for (const char* end : {"250,wall\n", "250,J1\n", "250,J2\n"}) {
     EXPECT_NE(text.find(end), std::string::npos) << end;
   }
 }

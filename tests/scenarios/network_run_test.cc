@@ -126,7 +126,8 @@ TEST_F(TeeRun, PinnedToTheBranchItTurnsThere) {
   Scenario scenario = Load();
   scenario.mission.retrieve = "N4";
   scenario.mission.branches = "pinned";
-  scenario.network.inp_text = MakeBranching(0, 90, 0.5, 0.5).network.inp_text;  // enough to roll on against friction
+  scenario.network.inp_text =
+      MakeBranching(0, 90, 0.5, 0.5).network.inp_text;  // enough to roll on against friction
   const RunResult result = RunInto(scenario, other / "run");
   EXPECT_EQ(result.status, "ok");
   EXPECT_EQ(result.route_pipes, (std::vector<std::string>{"P1", "P3"}));
