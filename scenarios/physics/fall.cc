@@ -77,6 +77,30 @@ void CheckTerminalSpeeds(Checks& checks) {
   }
 }
 
+/// Drag coefficient of the reference ball that rolls along a plane in still water, from all that resists it:
+/// drag, and the water's torque at the rim.
+double CalcRollingDrag(double reynolds) {
+  const sim::FluidLoadCoefficients c = MakeCoefficients(1.1, kFreeBore_m);
+  sim::WaterAtBall water = MakeStillWater(kFreeBore_m);
+  water.axis_W = Vector3d::UnitX();
+  water.from_wall_W = Vector3d::UnitZ();
+  water.wall_gap_m = 0;
+  const double r = Ref::radius_m, v = reynolds * 1e-6 / (2 * r);
+  const auto load = sim::CalcFluidLoad(c, {v, 0, 0}, {0, v / r, 0}, water);
+  const double resistance_N = -load.drag_W_N.x() - load.spin_torque_W_N_m.y() / r;
+  return resistance_N / (500 * std::numbers::pi * r * r * v * v);
+}
+
+void CheckRollingDrag(Checks& checks) {
+  for (const double reynolds : {1e2, 1e3, 1e4}) {
+    const double l = std::log10(reynolds);
+    checks.Relative("C_D of a ball rolling down a plane in still water, Re " + FormatDigits(reynolds, 3),
+                    CalcRollingDrag(reynolds),
+                    std::pow(10, 3.02 - 1.89 * l + 0.411 * l * l - 0.033 * l * l * l), 1e-6,
+                    "Jan & Chen 1997 (their fit, from memory)");
+  }
+}
+
 /// Solid rotation with an axial stream: a ball of the water's own density, released with it, stays with it.
 double CalcSwirlError_m(double rate_Hz) {
   const double omega = 5, along = 0.5, radius = 0.03;
@@ -108,6 +132,7 @@ double CalcSwirlError_m(double rate_Hz) {
 void CheckFall(const ReproduceOptions&, ReproduceReport& report) {
   Checks checks(report, "fall and swirl");
   CheckTerminalSpeeds(checks);
+  CheckRollingDrag(checks);
   checks.AtMost("a ball like water leaves its streamline in a swirl, per turn [m]", CalcSwirlError_m(1000),
                 1e-6, "SG = 1 moves with the water");
 }
