@@ -7,11 +7,11 @@
 namespace piperun::scenarios::physics {
 namespace {
 
-/// As many digits as show a difference of the size of the tolerance.
+/// As many decimals as show a difference of a tenth of the tolerance.
 std::string TextWithin(double value, double tolerance) {
-  if (value == 0 || tolerance <= 0) return FormatDigits(value, 4);
-  const double digits = std::log10(std::abs(value) / tolerance) + 2;
-  return FormatDigits(value, static_cast<int>(std::fmin(std::fmax(digits, 3), 15)));
+  if (tolerance <= 0) return FormatDigits(value, 4);
+  return FormatFixed(value,
+                     static_cast<int>(std::fmin(std::fmax(1 - std::floor(std::log10(tolerance)), 0), 15)));
 }
 
 }  // namespace
