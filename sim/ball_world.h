@@ -98,12 +98,13 @@ struct BallState {
 /// Integrated leapfrog: v(n+1/2) = v(n-1/2) + dt (F_n + contact_n)/m, p(n+1) = p(n) + dt v(n+1/2), with half
 /// a kick in the first step; turning alike in the angular momentum (sim/tumbling.h). F_n is evaluated at v_n
 /// = v(n-1/2) + a(n-1) dt/2, so straight motion, tumbling, frictionless rocking and the rolling of an
-/// eccentric ball are of second order; rolling friction on a turning contact normal is of first, and so are
-/// impacts. Loads act at the sphere's centre B, everything told is about B; v_step = v_M - (R(n+1) - R(n))
-/// p_BM/dt. The contact is rigid, with or without a rebound (sim/impact.h), or has a compliance; sliding
-/// friction obeys Coulomb's cone, rolling resistance a disc of radius b N, spinning resistance b_sp N. The
-/// state at step n needs the velocity half a step later: the world runs one step ahead of what it tells.
-/// Where pipes meet, the ball goes wherever it is pushed.
+/// eccentric ball are of second order; rolling friction on a turning contact normal is between first and
+/// second, impacts are of first. Loads act at the sphere's centre B, everything told is about B; v_step = v_M
+/// - (R(n+1) - R(n)) p_BM/dt. The contact is rigid, with or without a rebound (sim/impact.h), or has a
+/// compliance; sliding friction is Coulomb's along two axes of the contact plane (up to sqrt(2) too much
+/// between them), rolling resistance a disc of radius b N, spinning resistance b_sp N. The state at step n
+/// needs the velocity half a step later: the world runs one step ahead of what it tells. Where pipes meet,
+/// the ball goes wherever it is pushed.
 class BallWorld {
  public:
   /// Keeps a reference to the bore. The ball must start inside the water, at its spot.
