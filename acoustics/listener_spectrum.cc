@@ -1,7 +1,6 @@
 #include "acoustics/listener_spectrum.h"
 
 #include <algorithm>
-#include <ranges>
 #include <utility>
 
 #include "acoustics/decay.h"
@@ -31,6 +30,20 @@ std::vector<float> TabulateSteady(const AcousticScene& scene, const HydrophonePa
                                 CalcSelfNoisePsd(params, f_Hz));
   }
   return psd;
+}
+
+/// The first of begin, begin + 1, ... that `holds` is false for, or `end`; it is true for all before.
+template <class Predicate>
+std::size_t FindFirstFailing(std::size_t begin, std::size_t end, Predicate holds) {
+  while (begin < end) {
+    const std::size_t middle = begin + (end - begin) / 2;
+    if (holds(middle)) {
+      begin = middle + 1;
+    } else {
+      end = middle;
+    }
+  }
+  return begin;
 }
 
 }  // namespace
@@ -120,9 +133,8 @@ void ListenerSpectrum::AddLeak(const LeakRow& leak, const PipePlace& place, std:
   const float* loss_1_m = power_loss_1_m_[wave_of_pipe_[static_cast<std::size_t>(place.pipe)]].data();
   const auto own_m = static_cast<float>(way.own_m + arrival.length_m);
   // losses grow with frequency: the first inaudible bin ends the row
-  const auto audible = *std::ranges::partition_point(
-      std::views::iota(std::size_t{1}, bins()),
-      [&](std::size_t k) { return other[k] + own_m * loss_1_m[k] < kInaudibleLoss; });
+  const std::size_t audible = FindFirstFailing(
+      1, bins(), [&](std::size_t k) { return other[k] + own_m * loss_1_m[k] < kInaudibleLoss; });
   for (std::size_t k = 1; k < audible; ++k) {
     psd[k] += leak.psd[k] * CalcDecay(other[k] + own_m * loss_1_m[k]);
   }

@@ -350,7 +350,7 @@ FlowField::Junction& FlowField::FindOrMakeJunction(int node) const {
     core_m.push_back(arm.end.at_to ? zones.to.core_m : zones.from.core_m);
   }
   const std::vector<double> zero(joint.arms.size());
-  junction = std::make_unique<Junction>(JunctionFlow(joint, core_m), zero, zero);
+  junction = std::make_unique<Junction>(Junction{JunctionFlow(joint, core_m), zero, zero});
   return *junction;
 }
 
