@@ -142,7 +142,7 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(piperun("scenario", "validate", shown).returncode, 0)
 
     def test_validate_finds_physics_without_meaning(self):
-        base = SCENARIO + "ball: {preset: foam_2.5in, contact_stiffness_N_m: 20000}\n"
+        base = SCENARIO + "ball: {preset: foam_2.5in, added_mass_coefficient: 0.62, contact_stiffness_N_m: 20000}\n"
         line = base.count("\n")
         for text, parts in [
                 (base + "motion: {kind: ball_in_pipe, rate_Hz: 100}\n",
