@@ -36,8 +36,9 @@ TEST(WallFeatureList, NamesTheFeaturesOfASeriesByTheirNumber) {
 
 TEST(WallFeatureList, IsAFunctionOfSeedAndRunAndOfNoOtherEntry) {
   const auto places = [](const std::string& features, const std::vector<std::string>& set) {
+    const auto assembly = Assemble(WithFeatures(features, set));
     std::vector<double> s;
-    for (const WallFeatureLabel& label : Assemble(WithFeatures(features, set))->wall_features) {
+    for (const WallFeatureLabel& label : assembly->wall_features) {
       if (label.kind == "joint") s.push_back(label.s_m);
     }
     return s;
