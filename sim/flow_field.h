@@ -17,6 +17,9 @@
 
 namespace piperun::sim {
 
+/// A ball closer than this to a wall touches it: far above rounding, far below anything it would feel.
+inline constexpr double kTouching_m = 1e-6;
+
 /// Mean (not turbulent) flow as a ball sees it: averages over its frontal disc, in W.
 struct WaterAtBall {
   Vector3d velocity_W = Vector3d::Zero();

@@ -101,6 +101,7 @@ FluidLoadCoefficients CalcFluidLoadCoefficients(const BallParams& ball, const Fo
   const double displaced_kg = water.density_kg_m3 * ball.volume_m3();
   c.weight_W_N = (ball.mass_kg() - displaced_kg) * gravity_W;
   c.added_mass_kg = CalcAddedMass_kg(ball, displaced_kg, bore_radii_m.front());
+  c.inertial_mass_kg = ball.mass_kg() + c.added_mass_kg;
   c.accelerated_mass_kg = forces.fluid_acceleration ? displaced_kg + c.added_mass_kg : 0;
   c.pressed_volume_m3 = forces.pressure_fall ? ball.volume_m3() : 0;
   c.radius_m = ball.radius_m;

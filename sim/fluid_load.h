@@ -17,6 +17,7 @@ namespace piperun::sim {
 struct FluidLoadCoefficients {
   Vector3d weight_W_N = Vector3d::Zero();  ///< (m - rho V) g
   double added_mass_kg = 0;                ///< m_a = C_a rho V, for the mass matrix
+  double inertial_mass_kg = 0;             ///< m + m_a
   double accelerated_mass_kg = 0;          ///< rho V + m_a
   double pressed_volume_m3 = 0;            ///< V
   double radius_m = 0;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 namespace piperun::sim {
 
 /// One step of a damped oscillator that noise drives, solved exactly for constant coefficients:
@@ -25,6 +27,13 @@ struct OscillatorStep {
   double noise_x = 0;
   double noise_xy = 0;
   double noise_y = 0;
+
+  /// x' and y' of one oscillator, or of as many as a vector has components.
+  template <class T>
+  std::pair<T, T> Advance(const T& x, const T& y, const T& push, const T& n1, const T& n2) const {
+    return {keep_x * x + trade * y + push_x_s * push + noise_xy * n1 + noise_x * n2,
+            keep_y * y - trade * x + push_y_s * push + noise_y * n1};
+  }
 };
 
 /// Over- and underdamped alike. omega > 0, gamma > 0, dt > 0 (aborts otherwise).

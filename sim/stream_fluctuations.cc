@@ -2,17 +2,12 @@
 
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "sim/pipe_flow.h"
 #include "sim/random_oscillator.h"
 
 namespace piperun::sim {
-namespace {
-
-constexpr double kTouching_m = 1e-6;  // as the motion tells it
-
-}  // namespace
-
 StreamFluctuations::StreamFluctuations(const StreamParams& params, std::uint64_t seed, std::uint64_t run,
                                        Rate rate, double ball_diameter_m, double response,
                                        double viscosity_m2_s)
@@ -45,9 +40,8 @@ void StreamFluctuations::StepSwirl() {
   if (omega == 0) return;
   const OscillatorStep step = CalcOscillatorStep(omega, kSwirlDamping * omega, period_s_);
   const auto n = swirl_noise_.SixNormals(static_cast<std::uint64_t>(state_.step), 0);
-  const double s = state_.swirl, y = state_.swirl_partner;
-  state_.swirl = step.keep_x * s + step.trade * y + step.noise_xy * n[0] + step.noise_x * n[1];
-  state_.swirl_partner = step.keep_y * y - step.trade * s + step.noise_y * n[0];
+  std::tie(state_.swirl, state_.swirl_partner) =
+      step.Advance(state_.swirl, state_.swirl_partner, 0.0, n[0], n[1]);
 }
 
 Swirl StreamFluctuations::swirl() const {

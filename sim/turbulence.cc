@@ -105,10 +105,8 @@ TurbulenceState StepTurbulence(const TurbulenceState& state, const LocalTurbulen
   const OscillatorStep step = CalcOscillatorStep(local.omega_1_s, local.gamma_1_s, dt_s);
   const Vector3d push = (held ? 0 : c.response) * local.drift_W_1_s;
   const Vector3d to_both(n[0], n[1], n[2]), to_xi(n[3], n[4], n[5]);
-  return {
-      step.keep_x * state.xi_W + step.trade * state.eta_W + step.push_x_s * push + step.noise_xy * to_both +
-          step.noise_x * to_xi,
-      step.keep_y * state.eta_W - step.trade * state.xi_W + step.push_y_s * push + step.noise_y * to_both};
+  const auto [xi_W, eta_W] = step.Advance(state.xi_W, state.eta_W, push, to_both, to_xi);
+  return {xi_W, eta_W};
 }
 
 WaterFluctuation CalcFluctuation(const TurbulenceState& state, const LocalTurbulence& local,

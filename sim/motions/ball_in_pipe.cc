@@ -20,7 +20,6 @@ namespace piperun::sim {
 namespace {
 
 constexpr double kProgress_m = 0.01;
-constexpr double kTouching_m = 1e-6;  // far above rounding, far below anything a ball would feel
 
 struct BallInPipeParams : ParamsOf<BallInPipeParams> {
   double rate_Hz = 1000;
@@ -41,15 +40,14 @@ struct BallInPipeParams : ParamsOf<BallInPipeParams> {
 /// Refuses a contact that is too short for the steps.
 StepResolution WatchSteps(const BallParams& ball, const FluidLoadCoefficients& c, Rate rate) {
   if (!ball.contact_stiffness_N_m) return {rate, 0};
-  const double mass_kg = ball.mass_kg() + c.added_mass_kg;
-  RequireResolvedContact(*ball.contact_stiffness_N_m, mass_kg, rate);
-  return {rate, CalcContactPhase_rad(*ball.contact_stiffness_N_m, mass_kg, rate)};
+  RequireResolvedContact(*ball.contact_stiffness_N_m, c.inertial_mass_kg, rate);
+  return {rate, CalcContactPhase_rad(*ball.contact_stiffness_N_m, c.inertial_mass_kg, rate)};
 }
 
 /// Share of a sudden change of the water's velocity that the ball takes part in without drag (chi,
 /// sim/turbulence.h).
-double CalcResponse(const BallParams& ball, const FluidLoadCoefficients& c) {
-  return std::min(1.0, c.accelerated_mass_kg / (ball.mass_kg() + c.added_mass_kg));
+double CalcResponse(const FluidLoadCoefficients& c) {
+  return std::min(1.0, c.accelerated_mass_kg / c.inertial_mass_kg);
 }
 
 /// Of the pipes that are open to the ball; first the one it is put into.
@@ -91,12 +89,13 @@ class BallInPipe : public Motion {
                                                 BoreRadii_m(context))),
         ranges_(coefficients_, context.water, FindProfileLaw(params.stream.profile)),
         fluctuations_(params.stream, context.seed, context.run, rate_, 2 * context.ball.radius_m,
-                      CalcResponse(context.ball, coefficients_), context.water.kinematic_viscosity_m2_s),
+                      CalcResponse(coefficients_), context.water.kinematic_viscosity_m2_s),
         steps_(WatchSteps(context.ball, coefficients_, rate_)),
         world_(*context.bore, MakeTubeBall(ApplyForces(context.ball, params.forces), coefficients_), rate_,
                MakeLaunch(context, context.lateral_sd_m),
                [this](const BallInstant& ball) { return load_ = EvalLoad(ball); }),
-        contact_events_(context.ball.radius_m, InertialMass_kg(), params.contact_event_speed_m_s) {
+        contact_events_(context.ball.radius_m, coefficients_.inertial_mass_kg,
+                        params.contact_event_speed_m_s) {
     Publish();
     progress_m_ = state_.chainage_m;
   }
@@ -140,8 +139,8 @@ class BallInPipe : public Motion {
     ranges_.Feed(load.numbers, water_);
     const double slip_m_s = (water_.velocity_W - ball.v_WB_W).norm();
     if (slip_m_s > 0) {
-      load.drag_W_N *=
-          steps_.HoldDrag(2 * load.drag_W_N.norm() * rate_.Period_s() / (InertialMass_kg() * slip_m_s));
+      load.drag_W_N *= steps_.HoldDrag(2 * load.drag_W_N.norm() * rate_.Period_s() /
+                                       (coefficients_.inertial_mass_kg * slip_m_s));
     }
     return {load.Force_W_N(), load.spin_torque_W_N_m + CalcWeightTorque_W_N_m(ball.q_WB)};
   }
@@ -152,12 +151,10 @@ class BallInPipe : public Motion {
     return p_BC_W.cross(context_.ball.mass_kg() * context_.gravity_W);
   }
 
-  double InertialMass_kg() const { return context_.ball.mass_kg() + coefficients_.added_mass_kg; }
-
   void DetectContactEvents() {
     const BallState& ball = world_.state();
-    const double carried_N = CalcCarriedForce_N(load_.force_W_N.norm(), InertialMass_kg(), ball.spot.axis,
-                                                ball.X_LB.p, ball.v_WB_W);
+    const double carried_N = CalcCarriedForce_N(load_.force_W_N.norm(), coefficients_.inertial_mass_kg,
+                                                ball.spot.axis, ball.X_LB.p, ball.v_WB_W);
     contact_events_.Step(
         {ball.time, rate_.Period_s(), carried_N, {state_.X_WB.p, state_.pipe, state_.s_m, state_.chainage_m}},
         ball.contacts);
