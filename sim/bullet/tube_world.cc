@@ -35,6 +35,8 @@ void TubeWorld::SetFriction(btScalar friction) {
     btManifoldPoint& point = manifold_.getContactPoint(i);
     point = btManifoldPoint();
     point.m_combinedFriction = friction;
+    // Bullet's constructor leaves these as they were in memory
+    point.m_combinedRollingFriction = point.m_combinedSpinningFriction = 0;  // ContactResistance does that
     point.m_combinedRestitution = 0;  // rebounds are aimed at through the distance
     point.m_contactPointFlags = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_HAS_CONTACT_ERP;
     point.m_contactERP = 1;
