@@ -5,106 +5,126 @@
 namespace piperun::sim::bullet {
 namespace {
 
-/// Bullet's step of projected Gauss and Seidel for one row, without the zeros of a wall that does not move.
-/// Returns the change of the velocity along the row.
-btScalar Resolve(const btSolverConstraint& row, btSolverBody& body) {
-  const btScalar speed = row.m_contactNormal1.dot(body.internalGetDeltaLinearVelocity()) +
-                         row.m_relpos1CrossNormal.dot(body.internalGetDeltaAngularVelocity());
-  const btScalar before = row.m_appliedImpulse;
-  const btScalar change = row.m_rhs - before * row.m_cfm - speed * row.m_jacDiagABInv;
-  const btScalar wanted = before + change;
-  const bool free = wanted >= row.m_lowerLimit && wanted <= row.m_upperLimit;
-  row.m_appliedImpulse = free ? wanted : wanted < row.m_lowerLimit ? row.m_lowerLimit : row.m_upperLimit;
-  const btScalar given = free ? change : row.m_appliedImpulse - before;
-  body.internalApplyImpulse(row.m_contactNormal1 * body.internalGetInvMass(), row.m_angularComponentA, given);
-  return given * (1 / row.m_jacDiagABInv);
+/// Along the slip and across it; any two where nothing slips.
+void AimFriction(btManifoldPoint& point, const btVector3& velocity) {
+  const btVector3& n = point.m_normalWorldOnB;
+  btVector3 &along = point.m_lateralFrictionDir1, &across = point.m_lateralFrictionDir2;
+  along = velocity - n * n.dot(velocity);
+  const btScalar slip2 = along.length2();
+  if (slip2 > SIMD_EPSILON) {
+    along *= 1 / btSqrt(slip2);
+    across = along.cross(n);
+    across.normalize();
+  } else {
+    btPlaneSpace1(n, along, across);
+  }
 }
 
 }  // namespace
 
-btScalar ContactSolver::solveGroup(btCollisionObject** bodies, int, btPersistentManifold** manifolds,
-                                   int manifold_count, btTypedConstraint**, int,
-                                   const btContactSolverInfo& info, btIDebugDraw*, btDispatcher*) {
-  btRigidBody& moving = *btRigidBody::upcast(bodies[0]);
-  SetUp(moving, manifolds, manifold_count, info);
+btScalar ContactSolver::solveGroup(btCollisionObject** bodies, int, btPersistentManifold** manifolds, int,
+                                   btTypedConstraint**, int, const btContactSolverInfo& info, btIDebugDraw*,
+                                   btDispatcher*) {
+  btRigidBody& body = *btRigidBody::upcast(bodies[0]);
+  btPersistentManifold& manifold = *manifolds[0];
+  w_before_ = body.getAngularVelocity();
+  dv_.setZero();
+  dw_.setZero();
+  contacts_.resizeNoInitialize(0);
+  for (int i = 0; i < manifold.getNumContacts(); ++i) {
+    contacts_.push_back(MakeRows(body, manifold.getContactPoint(i), info));
+  }
   btScalar residual = 0;
   for (int i = 0; i < info.m_numIterations; ++i) {
     residual = Iterate();
     if (residual <= info.m_leastSquaresResidualThreshold) break;
   }
-  WriteBack(moving, info);
+  for (int i = 0; i < manifold.getNumContacts(); ++i) {
+    btManifoldPoint& point = manifold.getContactPoint(i);
+    point.m_appliedImpulse = contacts_[i].normal.impulse;
+    point.m_appliedImpulseLateral1 = contacts_[i].friction[0].impulse;
+    point.m_appliedImpulseLateral2 = contacts_[i].friction[1].impulse;
+  }
+  body.setLinearVelocity(body.getLinearVelocity() + dv_);
+  body.setAngularVelocity(w_before_ + dw_);
   return residual;
 }
 
-void ContactSolver::SetUp(btRigidBody& moving, btPersistentManifold** manifolds, int manifold_count,
-                          const btContactSolverInfo& info) {
-  if (m_tmpSolverBodyPool.size() == 0) {
-    m_tmpSolverBodyPool.resizeNoInitialize(2);
-    m_fixedBodyId = 1;  // all that does not move
-    initSolverBody(&wall(), nullptr, info.m_timeStep);
-  }
-  initSolverBody(&body(), &moving, info.m_timeStep);
-  moving.setCompanionId(0);
-  m_tmpSolverContactConstraintPool.resizeNoInitialize(0);
-  m_tmpSolverContactFrictionConstraintPool.resizeNoInitialize(0);
-  convertContacts(manifolds, manifold_count, info);
-  AimAtSlip();
-  resistances_.resizeNoInitialize(0);
-  if (rolling_length_ == 0 && spinning_length_ == 0) return;
-  for (int i = 0; i < m_tmpSolverContactConstraintPool.size(); ++i) {
-    resistances_.push_back(ContactResistance(moving, m_tmpSolverContactConstraintPool[i].m_contactNormal1));
-  }
+ContactSolver::ContactRows ContactSolver::MakeRows(const btRigidBody& body, btManifoldPoint& point,
+                                                   const btContactSolverInfo& info) const {
+  const btVector3& n = point.m_normalWorldOnB;
+  const btVector3 lever = point.m_positionWorldOnA - body.getWorldTransform().getOrigin();
+  AimFriction(point, body.getVelocityInLocalPoint(lever));
+  const btScalar per_s = 1 / info.m_timeStep;
+  ContactRows rows{MakeRow(body, n, lever, point.m_contactCFM * per_s),
+                   {MakeRow(body, point.m_lateralFrictionDir1, lever, 0),
+                    MakeRow(body, point.m_lateralFrictionDir2, lever, 0)},
+                   point.m_combinedFriction,
+                   ContactResistance(body, n)};
+  rows.normal.wanted -= point.m_distance1 * per_s * rows.normal.mass;
+  for (Row& row : rows.friction) row.wanted += row.direction.dot(slip_) * row.mass;
+  return rows;
 }
 
-void ContactSolver::AimAtSlip() {
-  if (slip_.isZero()) return;
-  for (int i = 0; i < m_tmpSolverContactFrictionConstraintPool.size(); ++i) {
-    btSolverConstraint& row = m_tmpSolverContactFrictionConstraintPool[i];
-    row.m_rhs += row.m_contactNormal1.dot(slip_) * row.m_jacDiagABInv;
-  }
+/// Of an impulse that stops the point of the body; `cfm`: speed that it leaves for a unit of impulse.
+ContactSolver::Row ContactSolver::MakeRow(const btRigidBody& body, const btVector3& direction,
+                                          const btVector3& lever, btScalar cfm) const {
+  Row row;
+  row.direction = direction;
+  row.torque = lever.cross(direction);
+  row.push = direction * body.getInvMass();
+  row.turn = body.getInvInertiaTensorWorld() * row.torque;
+  row.mass = 1 / (body.getInvMass() + direction.dot(row.turn.cross(lever)) + cfm);
+  row.inverse_mass = 1 / row.mass;
+  row.wanted = -(direction.dot(body.getLinearVelocity()) + row.torque.dot(w_before_)) * row.mass;
+  row.softness = cfm * row.mass;
+  return row;
 }
 
 /// Returns the largest squared change of a velocity.
 btScalar ContactSolver::Iterate() {
   btScalar residual = 0;
   const auto count = [&](btScalar change) { residual = btMax(residual, change * change); };
-  for (int i = 0; i < m_tmpSolverContactConstraintPool.size(); ++i) {
-    count(Resolve(m_tmpSolverContactConstraintPool[i], body()));
+  for (int i = 0; i < contacts_.size(); ++i) count(Resolve(contacts_[i].normal, 0, SIMD_INFINITY));
+  for (int i = 0; i < contacts_.size(); ++i) {
+    const btScalar limit = contacts_[i].friction_coefficient * contacts_[i].normal.impulse;
+    if (!(contacts_[i].normal.impulse > 0)) continue;
+    for (Row& row : contacts_[i].friction) count(Resolve(row, -limit, limit));
   }
-  for (int i = 0; i < m_tmpSolverContactFrictionConstraintPool.size(); ++i) {
-    btSolverConstraint& row = m_tmpSolverContactFrictionConstraintPool[i];
-    const btScalar normal_impulse = m_tmpSolverContactConstraintPool[row.m_frictionIndex].m_appliedImpulse;
-    if (!(normal_impulse > 0)) continue;
-    row.m_lowerLimit = -(row.m_friction * normal_impulse);
-    row.m_upperLimit = row.m_friction * normal_impulse;
-    count(Resolve(row, body()));
-  }
-  for (int i = 0; i < resistances_.size(); ++i) {
-    residual = btMax(residual, Resist(m_tmpSolverContactConstraintPool[i], resistances_[i]));
-  }
+  if (rolling_length_ == 0 && spinning_length_ == 0) return residual;
+  for (int i = 0; i < contacts_.size(); ++i) residual = btMax(residual, Resist(contacts_[i]));
   return residual;
 }
 
-/// Returns the squared change of the surface speed.
-btScalar ContactSolver::Resist(const btSolverConstraint& contact, ContactResistance& resistance) {
-  const btScalar normal_impulse = contact.m_appliedImpulse;
-  btVector3& dw = body().internalGetDeltaAngularVelocity();
-  btScalar change = 0;
-  const auto turn = [&](const btVector3& by) {
-    dw += by;
-    change = btMax(change, by.length2() * radius_ * radius_);
-  };
-  const btVector3& w = body().m_angularVelocity;
-  if (rolling_length_ > 0) turn(resistance.ResistRolling(w + dw, rolling_length_ * normal_impulse));
-  if (spinning_length_ > 0) turn(resistance.ResistSpinning(w + dw, spinning_length_ * normal_impulse));
-  return change;
+/// A step of projected Gauss and Seidel. Returns the change of the velocity along the row.
+btScalar ContactSolver::Resolve(Row& row, btScalar lower, btScalar upper) {
+  const btScalar speed = row.direction.dot(dv_) + row.torque.dot(dw_);
+  const btScalar before = row.impulse;
+  const btScalar change = row.wanted - before * row.softness - speed * row.mass;
+  const btScalar wanted = before + change;
+  const bool free = wanted >= lower && wanted <= upper;
+  row.impulse = free ? wanted : wanted < lower ? lower : upper;
+  const btScalar given = free ? change : row.impulse - before;
+  dv_ += row.push * given;
+  dw_ += row.turn * given;
+  return given * row.inverse_mass;
 }
 
-void ContactSolver::WriteBack(btRigidBody& moving, const btContactSolverInfo& info) {
-  writeBackContacts(0, m_tmpSolverContactConstraintPool.size(), info);
-  body().writebackVelocity();
-  moving.setLinearVelocity(body().m_linearVelocity);
-  moving.setAngularVelocity(body().m_angularVelocity);
+/// Returns the squared change of the surface speed.
+btScalar ContactSolver::Resist(ContactRows& contact) {
+  const btScalar normal_impulse = contact.normal.impulse;
+  btScalar change = 0;
+  const auto turn = [&](const btVector3& by) {
+    dw_ += by;
+    change = btMax(change, by.length2() * radius_ * radius_);
+  };
+  if (rolling_length_ > 0) {
+    turn(contact.resistance.ResistRolling(w_before_ + dw_, rolling_length_ * normal_impulse));
+  }
+  if (spinning_length_ > 0) {
+    turn(contact.resistance.ResistSpinning(w_before_ + dw_, spinning_length_ * normal_impulse));
+  }
+  return change;
 }
 
 }  // namespace piperun::sim::bullet
