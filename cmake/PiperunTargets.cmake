@@ -14,9 +14,11 @@ endif()
 
 include(GNUInstallDirs)
 
-# Warnings and reproducible floating point. Contraction (FMA) and fast-math change bits between compilers.
+# Warnings and reproducible floating point. Contraction (FMA) and fast-math change bits between compilers; that nobody
+# reads errno or traps changes none, and lets square roots and choices be single instructions.
 add_library(piperun_flags INTERFACE)
-target_compile_options(piperun_flags INTERFACE -Wall -Wextra -Wconversion -ffp-contract=off)
+target_compile_options(piperun_flags INTERFACE -Wall -Wextra -Wconversion -ffp-contract=off -fno-math-errno
+                                               -fno-trapping-math)
 if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
   target_compile_options(piperun_flags INTERFACE -Wno-sign-conversion)  # as g++ reads -Wconversion
 else()

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -65,6 +66,13 @@ struct StepContact {
 class StepContacts {
  public:
   static constexpr std::size_t kCapacity = 4;
+  StepContacts() = default;
+  StepContacts(const StepContacts& other) { *this = other; }
+  StepContacts& operator=(const StepContacts& other) {  // copies no more than there are
+    size_ = other.size_;
+    std::copy(other.begin(), other.end(), contacts_.begin());
+    return *this;
+  }
   void Add(const StepContact& contact) {
     if (size_ < kCapacity) contacts_[size_++] = contact;
   }

@@ -166,10 +166,6 @@ void BoreWall::PlaceBeyond(const ShapePlace& place, bool at_to, const PlacedShap
   PlaceBeyond(into, !there.at_to, shape);
 }
 
-const BoreWall::Piece& BoreWall::FindPiece(const NetworkSpot& spot) const {
-  return pieces_[wall(spot).first_piece + spot.piece];
-}
-
 const BoreWall::End& BoreWall::NearEnd(const NetworkSpot& spot) const {
   return wall(spot).ends[spot.s_m > 0.5 * bore_.network().pipe(spot.pipe).length_m ? 1 : 0];
 }

@@ -120,7 +120,9 @@ class BoreWall {
   ShapePlace MakePlace(int pipe, const FeatureShape& shape) const;
   void PlaceInPipe(const ShapePlace& place, PlacedShape shape);
   void PlaceBeyond(const ShapePlace& place, bool at_to, const PlacedShape& shape);
-  const Piece& FindPiece(const NetworkSpot& spot) const;
+  const Piece& FindPiece(const NetworkSpot& spot) const {
+    return pieces_[wall(spot).first_piece + spot.piece];
+  }
   const PipeWall& wall(const NetworkSpot& spot) const { return walls_[static_cast<std::size_t>(spot.pipe)]; }
   const End& NearEnd(const NetworkSpot& spot) const;
   double CalcEndDistance_m(const NetworkSpot& spot) const;

@@ -38,6 +38,13 @@ bool ContactEventDetector::Presses(const StepContact& contact, const ContactStep
   return force_N > kRestingFactor * step.carried_force_N + least_N;
 }
 
+bool ContactEventDetector::IsIdle(const StepContacts& contacts) const {
+  const auto may_strike = [&](const StepContact& contact) {
+    return contact.closing_speed_m_s > least_speed_m_s_;
+  };
+  return open_size_ == 0 && std::none_of(contacts.begin(), contacts.end(), may_strike);
+}
+
 std::span<const ContactEvent> ContactEventDetector::Step(const ContactStep& step,
                                                          const StepContacts& contacts) {
   ended_size_ = 0;

@@ -60,6 +60,8 @@ class ContactEventDetector {
 
   /// Steps come in order. Returns the events that ended with this one; valid until the next call.
   std::span<const ContactEvent> Step(const ContactStep& step, const StepContacts& contacts);
+  /// True when no event is open and none of these contacts could open one, whatever carries the ball.
+  bool IsIdle(const StepContacts& contacts) const;
   /// Those of the last Step().
   std::span<const ContactEvent> ended() const { return {ended_.data(), ended_size_}; }
 

@@ -23,6 +23,11 @@ const Cone* FindCone(const Pipe& pipe, double s_m) {
   return nullptr;
 }
 
+/// Length over which the flow changes at an end of a reach that is so long outside the joints.
+double CalcWithdrawalWidth_m(const Pipe& pipe, double length_m) {
+  return std::min(kWithdrawalRadii * pipe.radius_m(), 0.5 * length_m);
+}
+
 /// Rotation that takes the arm's direction here to its direction at the node: an arm that bends within its
 /// joint's core is unrolled.
 Matrix3d CalcUnrolling(const Vector3d& here, const Vector3d& at_node) {
@@ -60,7 +65,11 @@ FlowField::FlowField(const Bore& bore, const FlowTimeline& flow, const WaterProp
       profile_(FindProfileLaw(stream.profile)),
       pipe_tables_(bore.network().pipes().size()),
       junctions_(bore.network().nodes().size()) {
-  for (std::size_t p = 0; p < pipe_tables_.size(); ++p) zones_.push_back(MakeZones(static_cast<int>(p)));
+  for (int pipe = 0; pipe < static_cast<int>(pipe_tables_.size()); ++pipe) {
+    zones_.push_back(MakeZones(pipe));
+    std::vector<Span>& spans = developed_.emplace_back();
+    for (const FlowReach& reach : flow.reaches(pipe)) spans.push_back(CalcDevelopedSpan(pipe, reach));
+  }
 }
 
 bool FlowField::HasJunction(const Joint& joint) const { return !joint.smooth && JunctionFlow::Covers(joint); }
@@ -86,6 +95,24 @@ FlowField::PipeZones FlowField::MakeZones(int pipe) const {
   return zones;
 }
 
+/// Of a reach, what lies outside the joints' cores.
+FlowField::Span FlowField::CalcFlowSpan(int pipe, const FlowReach& reach) const {
+  const PipeZones& zones = zones_[static_cast<std::size_t>(pipe)];
+  return {std::max(reach.s_begin_m, zones.from.core_m),
+          std::min(reach.s_end_m, bore_.network().pipe(pipe).length_m - zones.to.core_m)};
+}
+
+FlowField::Span FlowField::CalcDevelopedSpan(int pipe, const FlowReach& reach) const {
+  const PipeZones& zones = zones_[static_cast<std::size_t>(pipe)];
+  if (zones.profile_share < 1) return {0, -1};
+  const Pipe& p = bore_.network().pipe(pipe);
+  const Span flow = CalcFlowSpan(pipe, reach);
+  const double width_m = CalcWithdrawalWidth_m(p, flow.end_m - flow.begin_m);
+  return {
+      std::max({reach.s_begin_m + width_m, zones.from.profile_m, p.cone_from.length_m}),
+      std::min({reach.s_end_m - width_m, p.length_m - zones.to.profile_m, p.length_m - p.cone_to.length_m})};
+}
+
 FlowField::Site FlowField::MakeSite(const NetworkSpot& spot, const Vector3d& p_L, TrueTime t,
                                     const Swirl& swirl) const {
   Site site{spot, bore_.network().pipe(spot.pipe), zones_[static_cast<std::size_t>(spot.pipe)]};
@@ -109,6 +136,9 @@ WaterAtBall FlowField::Eval(const NetworkSpot& spot, const Vector3d& p_L, TrueTi
 }
 
 WaterAtBall FlowField::EvalMean(const Site& site) const {
+  if (developed_[static_cast<std::size_t>(site.spot.pipe)][site.reach].Contains(site.spot.s_m)) {
+    return EvalDeveloped(site);
+  }
   for (const bool at_to : {false, true}) {
     const double core_m = site.zone(at_to).core_m;
     if (core_m > 0 && site.FromEnd_m(at_to) < core_m) return EvalJunction(site, at_to);
@@ -139,14 +169,13 @@ double FlowField::FlowBeyond(const Site& site, bool at_to) const {
 /// Q along the axis: near an end of its reach it goes half the way to the flow beyond.
 Jet FlowField::CalcFlow(const Site& site) const {
   const FlowReach& reach = flow_.reaches(site.spot.pipe)[site.reach];
-  const double begin_m = std::max(reach.s_begin_m, site.zones.from.core_m);
-  const double end_m = std::min(reach.s_end_m, site.pipe.length_m - site.zones.to.core_m);
+  const Span span = CalcFlowSpan(site.spot.pipe, reach);
+  const double width_m = CalcWithdrawalWidth_m(site.pipe, span.end_m - span.begin_m);
   Jet flow{site.flow.flow_m3_s, 0, 0};
   for (const bool at_to : {false, true}) {
     const double s_end_m = at_to ? reach.s_end_m : reach.s_begin_m;
-    if (at_to ? s_end_m > end_m : s_end_m < begin_m)
+    if (at_to ? s_end_m > span.end_m : s_end_m < span.begin_m)
       continue;  // inside a joint, which spreads it over its wall
-    const double width_m = std::min(kWithdrawalRadii * site.pipe.radius_m(), 0.5 * (end_m - begin_m));
     const double away_m = std::abs(site.spot.s_m - s_end_m);
     if (!(away_m < width_m)) continue;
     const double jump = FlowBeyond(site, at_to) - site.flow.flow_m3_s;
@@ -326,6 +355,7 @@ CrossSpeed FlowField::CalcCrossSpeed(const Site& site, const Jet& bulk) const {
 void FlowField::AddCrossFlow(const Site& site, const Jet& flow, const Jet& share, const AxialFlow& main,
                              WaterAtBall& water) const {
   if (!cross_flow_ || flow.value == 0 || share.value == 0) return;
+  if (!secondary_.IsFelt(site.spot, flow.value < 0)) return;
   const Jet radius = CalcRadius(site.pipe, site.spot.s_m);
   const Jet bulk = share * (1 / pi * flow) * Inverse(radius * radius);
   const CrossSpeed speed = CalcCrossSpeed(site, bulk);

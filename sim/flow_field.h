@@ -88,6 +88,12 @@ class FlowField {
     EndZone from, to;
     double profile_share = 1;  ///< of the profile between the ends; less in short pipes
   };
+  /// Part of a reach in which nothing but the pipe's own developed flow is felt; may be empty.
+  struct Span {
+    double begin_m = 0;
+    double end_m = 0;
+    bool Contains(double s_m) const { return s_m >= begin_m && s_m <= end_m; }
+  };
   struct PipeTables {
     const DiscMeanTable* body = nullptr;
     const DiscMeanTable* from = nullptr;  ///< at a cone's wide end
@@ -101,6 +107,8 @@ class FlowField {
   struct Site;  // a spot with what the flow there depends on
 
   PipeZones MakeZones(int pipe) const;
+  Span CalcFlowSpan(int pipe, const FlowReach& reach) const;
+  Span CalcDevelopedSpan(int pipe, const FlowReach& reach) const;
   bool HasJunction(const Joint& joint) const;
   Site MakeSite(const NetworkSpot& spot, const Vector3d& p_L, TrueTime t, const Swirl& swirl) const;
   Jet CalcFlow(const Site& site) const;
@@ -135,6 +143,7 @@ class FlowField {
   SecondaryFlow secondary_;
   ProfileLaw profile_;
   std::vector<PipeZones> zones_;                                     // per pipe
+  std::vector<std::vector<Span>> developed_;                         // per pipe and reach
   mutable std::map<double, std::unique_ptr<DiscMeanTable>> tables_;  // by bore radius
   mutable std::vector<PipeTables> pipe_tables_;                      // per pipe
   mutable std::vector<std::unique_ptr<Junction>> junctions_;         // per node

@@ -22,9 +22,10 @@ double CalcLogWallFactor(const FluidLoadCoefficients& c, double diameter_ratio, 
   return SolveLogWallFactor(c.wall_factor, diameter_ratio, reynolds);
 }
 
-/// 1/2 rho A C_D |u| u = pi/8 rho nu d (C_D Re) u for the free sphere; in the tube u/f takes the place of u.
-Vector3d CalcDrag(const FluidLoadCoefficients& c, const Vector3d& u_rel, double nearness,
-                  LoadNumbers& numbers) {
+/// F/u of the drag: 1/2 rho A C_D |u| u = pi/8 rho nu d (C_D Re) u for the free sphere; in the tube u/f takes
+/// the place of u.
+double CalcDragOverSlip_N_s_m(const FluidLoadCoefficients& c, const Vector3d& u_rel, double nearness,
+                              LoadNumbers& numbers) {
   const double l = numbers.diameter_ratio;
   const Reynolds reynolds = u_rel.norm() * c.diameter_m / c.viscosity_m2_s;
   const double log_f = CalcLogWallFactor(c, l, reynolds), speed_up = std::exp(-log_f);
@@ -37,7 +38,7 @@ Vector3d CalcDrag(const FluidLoadCoefficients& c, const Vector3d& u_rel, double 
   }
   numbers.reynolds = reynolds.value;
   numbers.free_reynolds = free_reynolds.value;
-  return c.drag_scale_N_s_m * drag_times_reynolds * u_rel;
+  return c.drag_scale_N_s_m * drag_times_reynolds;
 }
 
 Vector3d CalcLift(const FluidLoadCoefficients& c, const Vector3d& u_rel, double nearness,
@@ -124,7 +125,8 @@ FluidLoad CalcFluidLoad(const FluidLoadCoefficients& c, const Vector3d& v_WB_W, 
   load.weight_W_N = c.weight_W_N;
   load.fluid_acceleration_W_N = c.accelerated_mass_kg * water.acceleration_W;
   load.pressure_fall_W_N = c.pressed_volume_m3 * water.pressure_fall_W_Pa_m;
-  load.drag_W_N = CalcDrag(c, u_rel, nearness, load.numbers);
+  load.drag_over_slip_N_s_m = CalcDragOverSlip_N_s_m(c, u_rel, nearness, load.numbers);
+  load.drag_W_N = load.drag_over_slip_N_s_m * u_rel;
   load.lift_W_N = CalcLift(c, u_rel, nearness, water);
   load.magnus_W_N = CalcMagnus(c, -u_rel, w_rel);
   load.spin_torque_W_N_m = CalcSpinTorque(c, w_rel, load.numbers);

@@ -57,6 +57,7 @@ struct FluidLoad {
   Vector3d fluid_acceleration_W_N = Vector3d::Zero();
   Vector3d pressure_fall_W_N = Vector3d::Zero();
   Vector3d drag_W_N = Vector3d::Zero();
+  double drag_over_slip_N_s_m = 0;  ///< of what drag_W_N began as: F = this (u - v)
   Vector3d lift_W_N = Vector3d::Zero();
   Vector3d magnus_W_N = Vector3d::Zero();
   Vector3d spin_torque_W_N_m = Vector3d::Zero();

@@ -8,7 +8,8 @@ namespace {
 
 constexpr double kGrowthDiameters = 1;
 constexpr double kDecayDiameters = 5;
-constexpr double kSharpDiameters = 1.5;  // radius of a bend whose secondary flow is full
+constexpr double kFeltDiameters = 40 * kDecayDiameters;  // 4e-18 is left
+constexpr double kSharpDiameters = 1.5;                  // radius of a bend whose secondary flow is full
 
 }  // namespace
 
@@ -71,6 +72,15 @@ SecondaryFlow::Way& SecondaryFlow::FindOrMakeWay(int pipe, bool reversed) const 
     strength = EvalPiece(p, piece, strength, s_m, reversed).strength;
   }
   return way;
+}
+
+bool SecondaryFlow::IsFelt(const NetworkSpot& spot, bool reversed) const {
+  const Pipe& pipe = bore_.network().pipe(spot.pipe);
+  const CentrelinePiece& piece = pipe.centreline[spot.piece];
+  if (!piece.straight()) return true;
+  const double from_entry_m = reversed ? piece.s_end_m() - spot.s_m : spot.s_m - piece.s_begin_m;
+  return from_entry_m < kFeltDiameters * pipe.diameter_m &&
+         !FindOrMakeWay(spot.pipe, reversed).entry[spot.piece].IsZero();
 }
 
 CrossGrowth SecondaryFlow::Eval(const NetworkSpot& spot, bool reversed) const {

@@ -11,6 +11,8 @@ namespace piperun::sim {
 struct CrossStrength {
   Vector3d cells_W = Vector3d::Zero();  ///< of a pair of cells: core velocity over the bulk speed
   double swirl = 0;                     ///< of a single cell, 0 to 1; its sense switches (sim/swirl.h)
+
+  bool IsZero() const { return cells_W.isZero(0) && swirl == 0; }
 };
 
 /// Strength at a place, and its derivative with s.
@@ -37,6 +39,8 @@ class SecondaryFlow {
   /// first met; nothing else allocates. Water that parts or meets at a smooth joint counts as running
   /// through.
   CrossGrowth Eval(const NetworkSpot& spot, bool reversed) const;
+  /// False where there is no bend upstream, or none so near that anything were left of its flow.
+  bool IsFelt(const NetworkSpot& spot, bool reversed) const;
 
  private:
   struct Way {

@@ -68,14 +68,14 @@ LocalTurbulence CalcLocalTurbulence(const TurbulentPlace& place, const Turbulenc
   local.scale_m_s =
       place.friction_velocity_m_s * std::sqrt(place.turbulent_fraction) * c.intensity * place.size_filter;
   if (place.friction_velocity_m_s == 0 || place.turbulent_fraction == 0) return local;
+  local.around_W = place.axis_W.cross(place.offset_W) / place.radius_m;
   local.drift_W_1_s = CalcDrift(local);
   SetTimeScales(c, local);
   return local;
 }
 
 Vector3d LocalTurbulence::Scale(const Vector3d& xi_W) const {
-  const Vector3d& t = place.axis_W;
-  const Vector3d q = t.cross(place.offset_W) / place.radius_m;
+  const Vector3d &t = place.axis_W, &q = around_W;
   return scale_m_s * (rms.radial * xi_W + (rms.axial - rms.radial) * t.dot(xi_W) * t +
                       (kAzimuthal2 - kRadial2) * q.dot(xi_W) * q);
 }
@@ -84,7 +84,8 @@ Vector3d LocalTurbulence::ScaleChange(const Vector3d& xi_W, const Vector3d& w_W)
   const Vector3d &t = place.axis_W, &d = place.offset_W, &kappa = place.curvature_W;
   const double ds = t.dot(w_W) / (1 - d.dot(kappa)), radius = place.radius_m;
   const Vector3d dt = ds * kappa, dd = w_W - ds * t;  // of the axis and of the offset
-  const Vector3d q = t.cross(d) / radius, dq = (dt.cross(d) + t.cross(dd)) / radius;
+  const Vector3d& q = around_W;
+  const Vector3d dq = (dt.cross(d) + t.cross(dd)) / radius;
   const double dx2 = 2 * d.dot(dd) / (radius * radius);
   const double along = t.dot(xi_W), around = q.dot(xi_W);
   const double d_radial = kRadial2 * dx2, d_axial = (kAxial2 + 2 * kAxial4 * x2) * dx2;

@@ -80,6 +80,7 @@ struct LocalTurbulence {
   TurbulentPlace place;
   double scale_m_s = 0;                     ///< v; 0: no fluctuations
   double x2 = 0;                            ///< (r/R)^2, at most 1: beyond the bore as at its wall
+  Vector3d around_W = Vector3d::Zero();     ///< q/R
   RmsProfile rms;                           ///< over v
   Vector3d drift_W_1_s = Vector3d::Zero();  ///< div S
   double omega_1_s = 0;                     ///< 1/sqrt(T1 T2)

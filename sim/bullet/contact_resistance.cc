@@ -17,16 +17,17 @@ ContactResistance::ContactResistance(const btRigidBody& body, const btVector3& n
     rate_ = 0.5 * (b11_ + b22_ + std::hypot(b11_ - b22_, 2 * b12_));
   }
   inverse_rate_ = 1 / rate_;
+  normal_rate_ = CalcRate(normal_);
+  normal_speed_ = normal_.dot(normal_rate_);
 }
 
 /// Stopping takes the whole inertia; where that is more than allowed, steps of the gradient find the impulse
 /// that opposes the rolling in the middle of the kick, which is that at the instant.
 btVector3 ContactResistance::ResistRolling(const btVector3& w, btScalar limit) {
-  const btVector3 w_t = w - normal_ * normal_.dot(w);
-  btVector3 wanted = rolling_ - CalcStopping(w_t);
+  const btVector3 w_t = Across(w);
+  btVector3 wanted = rolling_ - (isotropic_ ? w_t * inverse_rate_ : CalcStopping(w_t));
   if (wanted.length2() > limit * limit) {
-    const btVector3 middle = 0.5 * (w + w_before_);
-    wanted = rolling_ - (middle - normal_ * normal_.dot(middle)) * inverse_rate_;
+    wanted = rolling_ - Across(0.5 * (w + w_before_)) * inverse_rate_;
     const btScalar length = wanted.length();
     if (length > limit) wanted *= limit / length;
   }
@@ -36,20 +37,14 @@ btVector3 ContactResistance::ResistRolling(const btVector3& w, btScalar limit) {
 }
 
 btVector3 ContactResistance::ResistSpinning(const btVector3& w, btScalar limit) {
-  const btVector3 rate = CalcRate(normal_);
-  const btScalar wanted = btClamped(spinning_ - normal_.dot(w) / normal_.dot(rate), -limit, limit);
+  const btScalar wanted = btClamped(spinning_ - normal_.dot(w) / normal_speed_, -limit, limit);
   const btScalar change = wanted - spinning_;
   spinning_ = wanted;
-  return rate * change;
-}
-
-btVector3 ContactResistance::CalcRate(const btVector3& impulse) const {
-  return isotropic_ ? impulse * rate_ : rates_ * impulse;
+  return normal_rate_ * change;
 }
 
 /// The impulse q across the normal with B q = w_t.
 btVector3 ContactResistance::CalcStopping(const btVector3& w_t) const {
-  if (isotropic_) return w_t * inverse_rate_;
   const btScalar w1 = t1_.dot(w_t), w2 = t2_.dot(w_t), det = b11_ * b22_ - b12_ * b12_;
   return t1_ * ((b22_ * w1 - b12_ * w2) / det) + t2_ * ((b11_ * w2 - b12_ * w1) / det);
 }

@@ -25,7 +25,10 @@ class ContactResistance {
   btVector3 ResistSpinning(const btVector3& w, btScalar limit);
 
  private:
-  btVector3 CalcRate(const btVector3& impulse) const;
+  btVector3 Across(const btVector3& w) const { return w - normal_ * normal_.dot(w); }
+  btVector3 CalcRate(const btVector3& impulse) const {
+    return isotropic_ ? impulse * rate_ : rates_ * impulse;
+  }
   btVector3 CalcStopping(const btVector3& w_t) const;
 
   btVector3 normal_;
@@ -35,6 +38,8 @@ class ContactResistance {
   bool isotropic_;
   btScalar rate_;          // largest eigenvalue of B = T^T I^-1 T, T two axes across the normal
   btScalar inverse_rate_;  // and its inverse
+  btVector3 normal_rate_;  // I^-1 n
+  btScalar normal_speed_;  // n . I^-1 n
   btMatrix3x3 rates_;      // I^-1, if not isotropic; so are
   btVector3 t1_, t2_;      // T
   btScalar b11_ = 0, b12_ = 0, b22_ = 0;

@@ -42,13 +42,13 @@ class ContactSolver : public btConstraintSolver {
  private:
   /// One direction at one contact.
   struct Row {
-    btVector3 direction;   // of the impulse
-    btVector3 torque;      // of a unit of it
-    btVector3 push;        // change of the velocity by a unit
-    btVector3 turn;        // and of the angular velocity
-    btScalar mass;         // effective
+    btVector3 direction;  // of the impulse
+    btVector3 torque;     // of a unit of it
+    btVector3 push;       // change of the velocity by a unit
+    btVector3 turn;       // and of the angular velocity
+    btScalar mass;        // effective
     btScalar inverse_mass;
-    btScalar wanted;       // impulse that takes the approach, when nothing else acts
+    btScalar wanted;  // impulse that takes the approach, when nothing else acts
     btScalar softness = 0;
     btScalar impulse = 0;  // so far
   };
@@ -59,8 +59,10 @@ class ContactSolver : public btConstraintSolver {
     ContactResistance resistance;
   };
 
-  ContactRows MakeRows(const btRigidBody& body, btManifoldPoint& point, const btContactSolverInfo& info) const;
-  Row MakeRow(const btRigidBody& body, const btVector3& direction, const btVector3& lever, btScalar cfm) const;
+  ContactRows MakeRows(const btRigidBody& body, btManifoldPoint& point,
+                       const btContactSolverInfo& info) const;
+  Row MakeRow(const btRigidBody& body, const btVector3& direction, const btVector3& lever,
+              btScalar cfm) const;
   btScalar Iterate();
   btScalar Resolve(Row& row, btScalar lower, btScalar upper);
   btScalar Resist(ContactRows& contact);

@@ -137,24 +137,24 @@ class BallInPipe : public Motion {
     fluctuations_.AddTo(ball.spot, ball.p_LB, water_);
     FluidLoad load = CalcFluidLoad(coefficients_, ball.v_WB_W, ball.w_WB_W, water_);
     ranges_.Feed(load.numbers, water_);
-    const double slip_m_s = (water_.velocity_W - ball.v_WB_W).norm();
-    if (slip_m_s > 0) {
-      load.drag_W_N *= steps_.HoldDrag(2 * load.drag_W_N.norm() * rate_.Period_s() /
-                                       (coefficients_.inertial_mass_kg * slip_m_s));
-    }
+    load.drag_W_N *=
+        steps_.HoldDrag(2 * load.drag_over_slip_N_s_m * rate_.Period_s() / coefficients_.inertial_mass_kg);
     return {load.Force_W_N(), load.spin_torque_W_N_m + CalcWeightTorque_W_N_m(ball.q_WB)};
   }
 
   /// Of the weight, about the sphere's centre, where the loads act: r_C x m g.
   Vector3d CalcWeightTorque_W_N_m(const Quaterniond& q_WB) const {
+    if (context_.ball.center_of_mass_B_m.isZero(0)) return Vector3d::Zero();
     const Vector3d p_BC_W = q_WB * context_.ball.center_of_mass_B_m;
     return p_BC_W.cross(context_.ball.mass_kg() * context_.gravity_W);
   }
 
   void DetectContactEvents() {
     const BallState& ball = world_.state();
-    const double carried_N = CalcCarriedForce_N(load_.force_W_N.norm(), coefficients_.inertial_mass_kg,
-                                                ball.spot.axis, ball.X_LB.p, ball.v_WB_W);
+    const double carried_N = contact_events_.IsIdle(ball.contacts)
+                                 ? 0
+                                 : CalcCarriedForce_N(load_.force_W_N.norm(), coefficients_.inertial_mass_kg,
+                                                      ball.spot.axis, ball.X_LB.p, ball.v_WB_W);
     contact_events_.Step(
         {ball.time, rate_.Period_s(), carried_N, {state_.X_WB.p, state_.pipe, state_.s_m, state_.chainage_m}},
         ball.contacts);
@@ -179,10 +179,10 @@ class BallInPipe : public Motion {
     state_.chainage_m = way_.Chainage_m(ball.spot.s_m);
     state_.water_speed_m_s = leg.reversed ? -water_.bulk_speed_m_s : water_.bulk_speed_m_s;
     state_.pressure_Pa = water_.pressure_Pa;
-    const double offset_m = (ball.X_LB.p - ball.spot.axis.p_W).norm();
+    offset_m_ = (ball.X_LB.p - ball.spot.axis.p_W).norm();
     state_.contact =
         ball.normal_force_N > 0 ||
-        PipeOf(ball.spot).RadiusAt_m(ball.spot.s_m) - context_.ball.radius_m - offset_m < kTouching_m;
+        PipeOf(ball.spot).RadiusAt_m(ball.spot.s_m) - context_.ball.radius_m - offset_m_ < kTouching_m;
   }
 
   void UpdateStatus() {
@@ -199,8 +199,7 @@ class BallInPipe : public Motion {
       return MotionStatus::kNotFinite;
     }
     const BallState& ball = world_.state();
-    const double offset_m = (ball.X_LB.p - ball.spot.axis.p_W).norm();
-    if (!context_.bore->Contains(ball.spot.pipe, ball.spot.s_m, offset_m, ball.X_LB.p)) {
+    if (!context_.bore->Contains(ball.spot.pipe, ball.spot.s_m, offset_m_, ball.X_LB.p)) {
       return MotionStatus::kLeftNetwork;
     }
     if (const int node = NodePassed(); node >= 0) {
@@ -250,6 +249,7 @@ class BallInPipe : public Motion {
   BallWorld world_;
   ContactEventDetector contact_events_;
   TruthState state_;
+  double offset_m_ = 0;  // of the ball's centre from the axis, at state_
   MotionStatus status_ = MotionStatus::kRunning;
   double progress_m_ = 0;  // farthest chainage that counted as progress, and when it was reached
   TrueTime progress_time_{};
