@@ -57,6 +57,7 @@ class BoreWall {
   const Bore& bore() const { return bore_; }
   const Pose& X_LF(const NetworkSpot& spot) const { return FindPiece(spot).X_LF; }
   const Pose& X_FL(const NetworkSpot& spot) const { return FindPiece(spot).X_FL; }
+  const Matrix3d& R_LF(const NetworkSpot& spot) const { return FindPiece(spot).R_LF; }
 
   /// The points of the wall at most `limit_m` away that are locally nearest to p_F: on walls facing it, and
   /// on edges. On the axis, where no wall is nearest, those in the direction `sideways_F`; none when that is

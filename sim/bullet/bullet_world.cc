@@ -97,9 +97,9 @@ void BulletWorld::Step(const BallLoad& load, double kick_s, double dt_s) {
 /// Velocities are kicked here and not through forces: Bullet's friction does not see torques before the step
 /// is over.
 BulletWorld::StepPlan BulletWorld::Kick(const BallLoad& load, double kick_s, double dt_s) {
-  const Quaterniond& q_FL = wall_.X_FL(spot_).q;
+  const auto R_FL = wall_.R_LF(spot_).transpose();
   const Vector3d dv_L = kick_s / data_.mass_kg * load.force_W_N;
-  body_.setLinearVelocity(body_.getLinearVelocity() + ToBullet(q_FL * dv_L));
+  body_.setLinearVelocity(body_.getLinearVelocity() + ToBullet(R_FL * dv_L));
   StepPlan plan;
   plan.dt_s = dt_s;
   plan.v_step_F = FromBullet(body_.getLinearVelocity());
@@ -107,7 +107,7 @@ BulletWorld::StepPlan BulletWorld::Kick(const BallLoad& load, double kick_s, dou
     KickTumbling(load, kick_s, plan);
   } else {
     const Vector3d dw_L = kick_s / data_.inertia_B_kg_m2.moments_kg_m2().x() * load.torque_W_N_m;
-    body_.setAngularVelocity(body_.getAngularVelocity() + ToBullet(q_FL * dw_L));
+    body_.setAngularVelocity(body_.getAngularVelocity() + ToBullet(R_FL * dw_L));
   }
   plan.acceleration_F = (plan.v_step_F - v_step_F_) / kick_s;
   return plan;
@@ -181,7 +181,7 @@ TubeWorld::Contact BulletWorld::AimSoftly(const WallContact& contact, double dt_
 }
 
 void BulletWorld::ReadContacts() {
-  const Quaterniond& q_LF = wall_.X_LF(spot_).q;
+  const Matrix3d& R_LF = wall_.R_LF(spot_);
   normal_impulse_N_s_ = 0;
   contacts_.Clear();
   for (int i = 0; i < world_.contact_count(); ++i) {
@@ -189,28 +189,28 @@ void BulletWorld::ReadContacts() {
     normal_impulse_N_s_ += impulse_N_s;
     if (!(impulse_N_s > 0)) continue;
     const AimedContact& aimed = aimed_[static_cast<std::size_t>(i)];
-    contacts_.Add({q_LF * aimed.normal_F, q_LF * FromBullet(world_.Impulse(i)), aimed.closing_speed_m_s,
+    contacts_.Add({R_LF * aimed.normal_F, R_LF * FromBullet(world_.Impulse(i)), aimed.closing_speed_m_s,
                    aimed.feature});
   }
 }
 
 void BulletWorld::Drift(const StepPlan& plan) {
-  const Pose& X_LF = wall_.X_LF(spot_);
+  const Matrix3d& R_LF = wall_.R_LF(spot_);
   const Vector3d w_F = FromBullet(body_.getAngularVelocity());
-  w_L_ = X_LF.q * w_F;
+  w_L_ = R_LF * w_F;
   dtheta_B_rad_ = q_LB_.conjugate() * w_L_ * plan.dt_s;
   v_step_F_ = FromBullet(body_.getLinearVelocity());
   if (tumbling_) {
     v_step_F_ -= CalcTurnedBy(plan.dt_s * w_F, plan.lever_F) / plan.dt_s;
     p_F_ += plan.dt_s * v_step_F_;
-    tumbling_->Finish(X_LF.q * (w_F - plan.w_kicked_F),
+    tumbling_->Finish(R_LF * (w_F - plan.w_kicked_F),
                       std::none_of(contacts_.begin(), contacts_.end(), IsImpact));
   } else {
     p_F_ = FromBullet(body_.getWorldTransform().getOrigin());
   }
   q_LB_ = (q_LB_ * ExpSO3(dtheta_B_rad_)).normalized();
-  p_L_ = X_LF * p_F_;
-  v_step_L_ = X_LF.q * v_step_F_;
+  p_L_ = R_LF * p_F_ + wall_.X_LF(spot_).p;
+  v_step_L_ = R_LF * v_step_F_;
 }
 
 }  // namespace piperun::sim::bullet

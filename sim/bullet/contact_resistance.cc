@@ -4,8 +4,11 @@
 
 namespace piperun::sim::bullet {
 
-ContactResistance::ContactResistance(const btRigidBody& body, const btVector3& normal)
-    : normal_(normal), w_before_(body.getAngularVelocity()) {
+void ContactResistance::SetUp(const btRigidBody& body, const btVector3& normal) {
+  normal_ = normal;
+  w_before_ = body.getAngularVelocity();
+  rolling_.setZero();
+  spinning_ = 0;
   const btVector3& local = body.getInvInertiaDiagLocal();
   isotropic_ = local.x() == local.y() && local.x() == local.z();
   rate_ = local.x();

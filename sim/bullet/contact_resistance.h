@@ -17,7 +17,8 @@ namespace piperun::sim::bullet {
 /// forward at all.
 class ContactResistance {
  public:
-  ContactResistance(const btRigidBody& body, const btVector3& normal);
+  /// For one step of a body; before anything else.
+  void SetUp(const btRigidBody& body, const btVector3& normal);
 
   /// One iteration: the change of w that takes the rolling, or as much of it as `limit` = b J lets it.
   btVector3 ResistRolling(const btVector3& w, btScalar limit);
@@ -32,9 +33,9 @@ class ContactResistance {
   btVector3 CalcStopping(const btVector3& w_t) const;
 
   btVector3 normal_;
-  btVector3 w_before_;          // before the wall acts
-  btVector3 rolling_{0, 0, 0};  // q so far
-  btScalar spinning_ = 0;       // q_n so far
+  btVector3 w_before_;  // before the wall acts
+  btVector3 rolling_;   // q so far
+  btScalar spinning_;   // q_n so far
   bool isotropic_;
   btScalar rate_;          // largest eigenvalue of B = T^T I^-1 T, T two axes across the normal
   btScalar inverse_rate_;  // and its inverse
@@ -42,7 +43,7 @@ class ContactResistance {
   btScalar normal_speed_;  // n . I^-1 n
   btMatrix3x3 rates_;      // I^-1, if not isotropic; so are
   btVector3 t1_, t2_;      // T
-  btScalar b11_ = 0, b12_ = 0, b22_ = 0;
+  btScalar b11_, b12_, b22_;
 };
 
 }  // namespace piperun::sim::bullet

@@ -30,17 +30,17 @@ btScalar ContactSolver::solveGroup(btCollisionObject** bodies, int, btPersistent
   w_before_ = body.getAngularVelocity();
   dv_.setZero();
   dw_.setZero();
-  contacts_.resizeNoInitialize(0);
-  for (int i = 0; i < manifold.getNumContacts(); ++i) {
-    contacts_.push_back(MakeRows(body, manifold.getContactPoint(i), info));
+  size_ = static_cast<std::size_t>(manifold.getNumContacts());
+  for (std::size_t i = 0; i < size_; ++i) {
+    SetUp(body, manifold.getContactPoint(static_cast<int>(i)), 1 / info.m_timeStep, contacts_[i]);
   }
   btScalar residual = 0;
   for (int i = 0; i < info.m_numIterations; ++i) {
     residual = Iterate();
     if (residual <= info.m_leastSquaresResidualThreshold) break;
   }
-  for (int i = 0; i < manifold.getNumContacts(); ++i) {
-    btManifoldPoint& point = manifold.getContactPoint(i);
+  for (std::size_t i = 0; i < size_; ++i) {
+    btManifoldPoint& point = manifold.getContactPoint(static_cast<int>(i));
     point.m_appliedImpulse = contacts_[i].normal.impulse;
     point.m_appliedImpulseLateral1 = contacts_[i].friction[0].impulse;
     point.m_appliedImpulseLateral2 = contacts_[i].friction[1].impulse;
@@ -50,49 +50,46 @@ btScalar ContactSolver::solveGroup(btCollisionObject** bodies, int, btPersistent
   return residual;
 }
 
-ContactSolver::ContactRows ContactSolver::MakeRows(const btRigidBody& body, btManifoldPoint& point,
-                                                   const btContactSolverInfo& info) const {
+void ContactSolver::SetUp(const btRigidBody& body, btManifoldPoint& point, btScalar per_s,
+                          ContactRows& rows) const {
   const btVector3& n = point.m_normalWorldOnB;
   const btVector3 lever = point.m_positionWorldOnA - body.getWorldTransform().getOrigin();
   AimFriction(point, body.getVelocityInLocalPoint(lever));
-  const btScalar per_s = 1 / info.m_timeStep;
-  ContactRows rows{MakeRow(body, n, lever, point.m_contactCFM * per_s),
-                   {MakeRow(body, point.m_lateralFrictionDir1, lever, 0),
-                    MakeRow(body, point.m_lateralFrictionDir2, lever, 0)},
-                   point.m_combinedFriction,
-                   ContactResistance(body, n)};
+  SetUp(body, n, lever, point.m_contactCFM * per_s, rows.normal);
   rows.normal.wanted -= point.m_distance1 * per_s * rows.normal.mass;
+  SetUp(body, point.m_lateralFrictionDir1, lever, 0, rows.friction[0]);
+  SetUp(body, point.m_lateralFrictionDir2, lever, 0, rows.friction[1]);
   for (Row& row : rows.friction) row.wanted += row.direction.dot(slip_) * row.mass;
-  return rows;
+  rows.friction_coefficient = point.m_combinedFriction;
+  rows.resistance.SetUp(body, n);
 }
 
 /// Of an impulse that stops the point of the body; `cfm`: speed that it leaves for a unit of impulse.
-ContactSolver::Row ContactSolver::MakeRow(const btRigidBody& body, const btVector3& direction,
-                                          const btVector3& lever, btScalar cfm) const {
-  Row row;
+void ContactSolver::SetUp(const btRigidBody& body, const btVector3& direction, const btVector3& lever,
+                          btScalar cfm, Row& row) const {
   row.direction = direction;
   row.torque = lever.cross(direction);
   row.push = direction * body.getInvMass();
   row.turn = body.getInvInertiaTensorWorld() * row.torque;
-  row.mass = 1 / (body.getInvMass() + direction.dot(row.turn.cross(lever)) + cfm);
-  row.inverse_mass = 1 / row.mass;
+  row.inverse_mass = body.getInvMass() + direction.dot(row.turn.cross(lever)) + cfm;
+  row.mass = 1 / row.inverse_mass;
   row.wanted = -(direction.dot(body.getLinearVelocity()) + row.torque.dot(w_before_)) * row.mass;
   row.softness = cfm * row.mass;
-  return row;
+  row.impulse = 0;
 }
 
 /// Returns the largest squared change of a velocity.
 btScalar ContactSolver::Iterate() {
   btScalar residual = 0;
   const auto count = [&](btScalar change) { residual = btMax(residual, change * change); };
-  for (int i = 0; i < contacts_.size(); ++i) count(Resolve(contacts_[i].normal, 0, SIMD_INFINITY));
-  for (int i = 0; i < contacts_.size(); ++i) {
-    const btScalar limit = contacts_[i].friction_coefficient * contacts_[i].normal.impulse;
-    if (!(contacts_[i].normal.impulse > 0)) continue;
-    for (Row& row : contacts_[i].friction) count(Resolve(row, -limit, limit));
+  for (ContactRows& contact : contacts()) count(Resolve(contact.normal, 0, SIMD_INFINITY));
+  for (ContactRows& contact : contacts()) {
+    if (!(contact.normal.impulse > 0)) continue;
+    const btScalar limit = contact.friction_coefficient * contact.normal.impulse;
+    for (Row& row : contact.friction) count(Resolve(row, -limit, limit));
   }
   if (rolling_length_ == 0 && spinning_length_ == 0) return residual;
-  for (int i = 0; i < contacts_.size(); ++i) residual = btMax(residual, Resist(contacts_[i]));
+  for (ContactRows& contact : contacts()) residual = btMax(residual, Resist(contact));
   return residual;
 }
 

@@ -5,6 +5,7 @@
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
 
 #include <array>
+#include <span>
 
 #include "sim/bullet/contact_resistance.h"
 
@@ -49,8 +50,8 @@ class ContactSolver : public btConstraintSolver {
     btScalar mass;        // effective
     btScalar inverse_mass;
     btScalar wanted;  // impulse that takes the approach, when nothing else acts
-    btScalar softness = 0;
-    btScalar impulse = 0;  // so far
+    btScalar softness;
+    btScalar impulse;  // so far
   };
   struct ContactRows {
     Row normal;
@@ -59,10 +60,10 @@ class ContactSolver : public btConstraintSolver {
     ContactResistance resistance;
   };
 
-  ContactRows MakeRows(const btRigidBody& body, btManifoldPoint& point,
-                       const btContactSolverInfo& info) const;
-  Row MakeRow(const btRigidBody& body, const btVector3& direction, const btVector3& lever,
-              btScalar cfm) const;
+  void SetUp(const btRigidBody& body, btManifoldPoint& point, btScalar per_s, ContactRows& rows) const;
+  void SetUp(const btRigidBody& body, const btVector3& direction, const btVector3& lever, btScalar cfm,
+             Row& row) const;
+  std::span<ContactRows> contacts() { return {contacts_.data(), size_}; }
   btScalar Iterate();
   btScalar Resolve(Row& row, btScalar lower, btScalar upper);
   btScalar Resist(ContactRows& contact);
@@ -71,7 +72,8 @@ class ContactSolver : public btConstraintSolver {
   btScalar rolling_length_;
   btScalar spinning_length_;
   btVector3 slip_{0, 0, 0};
-  btAlignedObjectArray<ContactRows> contacts_;
+  std::array<ContactRows, MANIFOLD_CACHE_SIZE> contacts_;
+  std::size_t size_ = 0;
   btVector3 w_before_{0, 0, 0};
   btVector3 dv_{0, 0, 0}, dw_{0, 0, 0};  // what the impulses so far did
 };
