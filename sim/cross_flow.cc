@@ -5,7 +5,7 @@ namespace {
 
 constexpr double kOnAxis_m = 1e-12;  // closer, the direction away from the axis means nothing
 
-/// The flow across the pipe at one place, ready to be differentiated along any direction.
+/// The flow across the pipe at one place, ready to be differentiated.
 struct CrossField {
   const CrossPlace& place;
   const CrossSpeed& speed;
@@ -24,25 +24,27 @@ struct CrossField {
 
   double Radius2() const { return place.radius_m * place.radius_m; }
   double Reach2() const { return place.ball_radius_m * place.ball_radius_m + place.offset_W.squaredNorm(); }
-  Vector3d CalcDerivative(const Vector3d& along) const;
+  Matrix3d CalcGradient() const;
 };
 
-/// (along . grad) u by the chain rule over s, t, d, w, c and R.
-Vector3d CrossField::CalcDerivative(const Vector3d& along) const {
-  const Vector3d &t = place.axis_W, &d = place.offset_W, &w = speed.cells_W_m_s;
-  const double ds = stretch * t.dot(along), radius = place.radius_m;
-  const Vector3d dt = ds * place.curvature_W, dd = along - ds * t, dw = ds * speed.cells_slope_W_1_s;
-  const double dradius = ds * place.radius_slope;
-  const Vector3d across = along - t.dot(along) * t;
-  const double dstretch = stretch * stretch * place.curvature_W.dot(across);
-  const double dp = (2 * Reach2() * dradius / radius - 2 * d.dot(dd)) / Radius2();
-  const double dg = dd.dot(t.cross(w)) + d.dot(dt.cross(w) + t.cross(dw));
-  const Vector3d dround = dd.cross(t) + d.cross(dt);
-  const double c_R = speed.swirl_m_s / radius;
-  const double dc_R = (ds * speed.swirl_slope_1_s - c_R * dradius) / radius;
+/// By the chain rule over s, t, d, w, c and R; grad_x: of x.
+Matrix3d CrossField::CalcGradient() const {
+  const Vector3d &t = place.axis_W, &d = place.offset_W, &kappa = place.curvature_W;
+  const Vector3d &w = speed.cells_W_m_s, &dw_ds = speed.cells_slope_W_1_s;
+  const double radius = place.radius_m, c_R = speed.swirl_m_s / radius;
+  const Vector3d grad_s = stretch * t, grad_radius = place.radius_slope * grad_s;
+  const Vector3d grad_stretch = stretch * stretch * (kappa - t.dot(kappa) * t);
+  const Vector3d grad_d2 = 2 * (d - d.dot(t) * grad_s);
+  const Vector3d grad_p = (2 * Reach2() / radius * grad_radius - grad_d2) / Radius2();
+  const Vector3d grad_g = t.cross(w) + d.dot(kappa.cross(w) + t.cross(dw_ds)) * grad_s;
+  const Vector3d grad_c_R = (speed.swirl_slope_1_s * grad_s - c_R * grad_radius) / radius;
   const double turn = 2 / Radius2() * g + c_R * p;
-  const double dturn = 2 / Radius2() * (dg - 2 * g * dradius / radius) + dc_R * p + c_R * dp;
-  return dstretch * bracket + stretch * (dp * w + p * dw - dturn * round - turn * dround);
+  const Vector3d grad_turn =
+      2 / Radius2() * (grad_g - 2 * g / radius * grad_radius) + p * grad_c_R + c_R * grad_p;
+  const Matrix3d grad_round = d.cross(kappa) * grad_s.transpose() - Skew(t);
+  return bracket * grad_stretch.transpose() +
+         stretch * (w * grad_p.transpose() + p * dw_ds * grad_s.transpose() - round * grad_turn.transpose() -
+                    turn * grad_round);
 }
 
 }  // namespace
@@ -56,7 +58,7 @@ CrossFlow CalcCrossFlow(const CrossPlace& place, const CrossSpeed& speed) {
   const CrossField field(place, speed);
   CrossFlow flow;
   flow.velocity_W = field.stretch * field.bracket;
-  for (int j = 0; j < 3; ++j) flow.gradient_1_s.col(j) = field.CalcDerivative(Vector3d::Unit(j));
+  flow.gradient_1_s = field.CalcGradient();
   return flow;
 }
 
