@@ -17,8 +17,9 @@ SecondaryFlow::SecondaryFlow(const Bore& bore, double amplitude)
     : bore_(bore), amplitude_(amplitude), ways_(bore.network().pipes().size()) {}
 
 /// In a bend the components of a along the bend's normal and binormal relax, each by itself.
-CrossGrowth SecondaryFlow::EvalPiece(const Pipe& pipe, std::size_t index, const CrossStrength& entry,
-                                     double s_m, bool reversed) const {
+CrossGrowth SecondaryFlow::EvalPiece(const Pipe& pipe, std::size_t index, const Entry& from, double s_m,
+                                     const CentrelinePoint& axis, bool reversed) const {
+  const CrossStrength& entry = from.strength;
   const CentrelinePiece& piece = pipe.centreline[index];
   const double sign = reversed ? -1 : 1, s_entry_m = reversed ? piece.s_end_m() : piece.s_begin_m;
   const double x_m = sign * (s_m - s_entry_m);
@@ -31,14 +32,14 @@ CrossGrowth SecondaryFlow::EvalPiece(const Pipe& pipe, std::size_t index, const 
     return growth;
   }
   const double sharpness = std::min(1.0, kSharpDiameters * pipe.diameter_m * piece.curvature_1_m);
-  const CentrelinePoint from = EvalCentreline(piece, s_entry_m), at = EvalCentreline(piece, s_m);
-  const Vector3d n = at.curvature_W / piece.curvature_1_m, b = at.tangent_W.cross(n);
+  const Vector3d n = axis.curvature_W / piece.curvature_1_m, b = axis.tangent_W.cross(n);
   const double goal = -amplitude_ * sharpness;
-  const double along_n = entry.cells_W.dot(from.curvature_W) / piece.curvature_1_m - goal;
+  const double along_n = entry.cells_W.dot(from.normal_W) - goal;
   const double along_b = entry.cells_W.dot(b);
   const double at_n = goal + left * along_n;
   growth.strength.cells_W = at_n * n + left * along_b * b;
-  growth.slope_1_m.cells_W = slope * (along_n * n + along_b * b) - at_n * piece.curvature_1_m * at.tangent_W;
+  growth.slope_1_m.cells_W =
+      slope * (along_n * n + along_b * b) - at_n * piece.curvature_1_m * axis.tangent_W;
   growth.strength.swirl = sharpness + left * (entry.swirl - sharpness);
   growth.slope_1_m.swirl = slope * (entry.swirl - sharpness);
   return growth;
@@ -50,26 +51,28 @@ CrossStrength SecondaryFlow::CalcEntry(int pipe, bool reversed) const {
   if (!joint.smooth) return {};
   const PipeEnd end{pipe, reversed};
   const PipeEnd before = joint.arms[joint.arms[0].end == end ? 1 : 0].end;
-  const Way& way = FindOrMakeWay(before.pipe, !before.at_to);
-  if (way.entry.empty()) return {};
-  const Pipe& other = bore_.network().pipe(before.pipe);
-  const std::size_t last = before.at_to ? other.centreline.size() - 1 : 0;
-  return EvalPiece(other, last, way.entry[last], other.EndS_m(before.at_to), !before.at_to).strength;
+  return FindOrMakeWay(before.pipe, !before.at_to).exit;
 }
 
 SecondaryFlow::Way& SecondaryFlow::FindOrMakeWay(int pipe, bool reversed) const {
   Way& way = ways_[static_cast<std::size_t>(pipe)][reversed ? 1 : 0];
   if (way.visited) return way;
   way.visited = true;
-  CrossStrength strength = CalcEntry(pipe, reversed);
+  way.exit = CalcEntry(pipe, reversed);
   const Pipe& p = bore_.network().pipe(pipe);
   const std::size_t count = p.centreline.size();
   way.entry.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t piece = reversed ? count - 1 - i : i;
-    way.entry[piece] = strength;
-    const double s_m = reversed ? p.centreline[piece].s_begin_m : p.centreline[piece].s_end_m();
-    strength = EvalPiece(p, piece, strength, s_m, reversed).strength;
+    const std::size_t index = reversed ? count - 1 - i : i;
+    const CentrelinePiece& piece = p.centreline[index];
+    const auto at = [&](bool end) { return end ? piece.s_end_m() : piece.s_begin_m; };
+    Entry& entry = way.entry[index];
+    entry.strength = way.exit;
+    if (!piece.straight()) {
+      entry.normal_W = EvalCentreline(piece, at(reversed)).curvature_W / piece.curvature_1_m;
+    }
+    const double s_m = at(!reversed);
+    way.exit = EvalPiece(p, index, entry, s_m, EvalCentreline(piece, s_m), reversed).strength;
   }
   return way;
 }
@@ -80,12 +83,13 @@ bool SecondaryFlow::IsFelt(const NetworkSpot& spot, bool reversed) const {
   if (!piece.straight()) return true;
   const double from_entry_m = reversed ? piece.s_end_m() - spot.s_m : spot.s_m - piece.s_begin_m;
   return from_entry_m < kFeltDiameters * pipe.diameter_m &&
-         !FindOrMakeWay(spot.pipe, reversed).entry[spot.piece].IsZero();
+         !FindOrMakeWay(spot.pipe, reversed).entry[spot.piece].strength.IsZero();
 }
 
 CrossGrowth SecondaryFlow::Eval(const NetworkSpot& spot, bool reversed) const {
   const Way& way = FindOrMakeWay(spot.pipe, reversed);
-  return EvalPiece(bore_.network().pipe(spot.pipe), spot.piece, way.entry[spot.piece], spot.s_m, reversed);
+  return EvalPiece(bore_.network().pipe(spot.pipe), spot.piece, way.entry[spot.piece], spot.s_m, spot.axis,
+                   reversed);
 }
 
 }  // namespace piperun::sim

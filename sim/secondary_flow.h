@@ -43,14 +43,20 @@ class SecondaryFlow {
   bool IsFelt(const NetworkSpot& spot, bool reversed) const;
 
  private:
+  /// Where the water comes into a piece.
+  struct Entry {
+    CrossStrength strength;
+    Vector3d normal_W = Vector3d::Zero();  // of a bend, there
+  };
   struct Way {
-    std::vector<CrossStrength> entry;  // where the water comes into each piece
-    bool visited = false;              // a ring of smooth joints ends here
+    std::vector<Entry> entry;  // per piece
+    CrossStrength exit;        // where the water leaves the pipe
+    bool visited = false;      // a ring of smooth joints ends here
   };
   Way& FindOrMakeWay(int pipe, bool reversed) const;
   CrossStrength CalcEntry(int pipe, bool reversed) const;
-  CrossGrowth EvalPiece(const Pipe& pipe, std::size_t piece, const CrossStrength& entry, double s_m,
-                        bool reversed) const;
+  CrossGrowth EvalPiece(const Pipe& pipe, std::size_t piece, const Entry& entry, double s_m,
+                        const CentrelinePoint& axis, bool reversed) const;
 
   const Bore& bore_;
   double amplitude_;
