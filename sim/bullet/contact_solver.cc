@@ -34,11 +34,7 @@ btScalar ContactSolver::solveGroup(btCollisionObject** bodies, int, btPersistent
   for (std::size_t i = 0; i < size_; ++i) {
     SetUp(body, manifold.getContactPoint(static_cast<int>(i)), 1 / info.m_timeStep, contacts_[i]);
   }
-  btScalar residual = 0;
-  for (int i = 0; i < info.m_numIterations; ++i) {
-    residual = Iterate();
-    if (residual <= info.m_leastSquaresResidualThreshold) break;
-  }
+  const btScalar residual = Iterate(info);
   for (std::size_t i = 0; i < size_; ++i) {
     btManifoldPoint& point = manifold.getContactPoint(static_cast<int>(i));
     point.m_appliedImpulse = contacts_[i].normal.impulse;
@@ -78,8 +74,21 @@ void ContactSolver::SetUp(const btRigidBody& body, const btVector3& direction, c
   row.impulse = 0;
 }
 
+/// The changes c_k of the velocities fall like a geometric series, so that the next one is about
+/// c_k^2/c_(k-1): when that is small enough, too, it is left out. Returns the square of the last change.
+btScalar ContactSolver::Iterate(const btContactSolverInfo& info) {
+  const btScalar enough = info.m_leastSquaresResidualThreshold;
+  btScalar before = 0, residual = 0;
+  for (int i = 0; i < info.m_numIterations; ++i) {
+    residual = IterateOnce();
+    if (residual <= enough || residual * residual <= enough * before) break;
+    before = residual;
+  }
+  return residual;
+}
+
 /// Returns the largest squared change of a velocity.
-btScalar ContactSolver::Iterate() {
+btScalar ContactSolver::IterateOnce() {
   btScalar residual = 0;
   const auto count = [&](btScalar change) { residual = btMax(residual, change * change); };
   for (ContactRows& contact : contacts()) count(Resolve(contact.normal, 0, SIMD_INFINITY));

@@ -64,7 +64,8 @@ class ContactSolver : public btConstraintSolver {
   void SetUp(const btRigidBody& body, const btVector3& direction, const btVector3& lever, btScalar cfm,
              Row& row) const;
   std::span<ContactRows> contacts() { return {contacts_.data(), size_}; }
-  btScalar Iterate();
+  btScalar Iterate(const btContactSolverInfo& info);
+  btScalar IterateOnce();
   btScalar Resolve(Row& row, btScalar lower, btScalar upper);
   btScalar Resist(ContactRows& contact);
 
