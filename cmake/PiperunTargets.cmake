@@ -49,7 +49,7 @@ endif()
 function(piperun_optimise_whole target)
   if(PIPERUN_WHOLE_PROGRAM)
     # of std::string's own operator+, wrongly (PR 105329)
-    target_link_options(${target} PRIVATE ${PIPERUN_WHOLE_PROGRAM} -O3 -Wno-stringop-overflow)
+    target_link_options(${target} PRIVATE ${PIPERUN_WHOLE_PROGRAM} -Wno-stringop-overflow)
   endif()
 endfunction()
 
