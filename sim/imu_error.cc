@@ -15,6 +15,14 @@ constexpr std::uint64_t kScaleSlot = 9;
 constexpr std::uint64_t kPoleStartSlot = 10;  // six
 static_assert(kPoleStartSlot + 3 * kFlickerPoles / 4 == kTriadSlots);
 
+// and beyond kMoreTriadSlots
+constexpr std::uint64_t kMarkovSlot = kMoreTriadSlots;  // of b_GM and s_i
+constexpr std::uint64_t kRoundingSlot = kMoreTriadSlots + 1;
+constexpr std::uint64_t kStepNoiseSlot = kMoreTriadSlots + 2;
+constexpr std::uint64_t kStartSlot = kMoreTriadSlots + 3;  // of b_GM and s_i
+constexpr std::uint64_t kRoundingStartSlot = kMoreTriadSlots + 4;
+constexpr std::uint64_t kMisalignmentSlot = kMoreTriadSlots + 5;
+
 constexpr double kFastestPole_s = 1e-2;
 
 Vector3d Normal3(const TriadStream& s, std::uint64_t sample, std::uint64_t slot) {
@@ -43,55 +51,69 @@ void StepPoles(TriadErrorState& state, std::uint64_t k, const TriadStream& strea
   }
 }
 
-}  // namespace
-
-const TriadFieldNames kGyroFields{
-    .bias = "bias_rad_s",
-    .bias_sd = "bias_sd_rad_s",
-    .noise = "noise_rad_s_sqrtHz",
-    .bias_instability = "bias_instability_rad_s",
-    .rate_random_walk = "rate_random_walk_rad_s2_sqrtHz",
-    .range = "range_rad_s",
-    .resolution = "resolution_rad_s",
-};
-
-const TriadFieldNames kAccelFields{
-    .bias = "bias_m_s2",
-    .bias_sd = "bias_sd_m_s2",
-    .noise = "noise_m_s2_sqrtHz",
-    .bias_instability = "bias_instability_m_s2",
-    .rate_random_walk = "rate_random_walk_m_s3_sqrtHz",
-    .range = "range_m_s2",
-    .resolution = "resolution_m_s2",
-};
-
-void TriadErrorParams::Visit(ParamVisitor& v, const TriadFieldNames& names) {
-  const Range small = Range::Between(-0.5, 0.5);
-  v.Vector({names.bias, "Constant bias of the three axes."}, Range::Any(), bias);
-  v.Number({names.bias_sd, "Turn-on bias: standard deviation per axis, drawn once per run."},
-           Range::NonNegative(), bias_sd);
-  v.Vector({"scale_error", "Constant scale-factor error of the three axes (0.01 reads 1 % too much)."}, small,
-           scale_error);
-  v.Number({"scale_error_sd", "Scale-factor error: standard deviation per axis, drawn once per run."},
-           Range::Between(0, 0.1), scale_error_sd);
-  v.Matrix({"misalignment", "M, row by row: M_ij is the part of true axis j that axis i reads too much."},
-           small, misalignment);
-  v.Number({names.noise, "White noise density N (angle or velocity random walk)."}, Range::NonNegative(),
-           noise);
-  v.Number({names.bias_instability, "Bias instability B; the Allan deviation is flat at 0.664 B."},
-           Range::NonNegative(), bias_instability);
-  v.Number({names.rate_random_walk, "Random walk K of the bias."}, Range::NonNegative(), rate_random_walk);
-  v.NumberOr({names.range, "The reading saturates at plus and minus this value."}, Range::Positive(), "none",
-             range);
-  v.Number({names.resolution, "One count of the output register; 0 means unrounded."}, Range::NonNegative(),
-           resolution);
+GaussMarkov MakeGaussMarkov(double sd, double correlation_s, double dt_s) {
+  return {sd, std::exp(-dt_s / correlation_s), sd * std::sqrt(-std::expm1(-2 * dt_s / correlation_s))};
 }
+
+Vector3d First(const std::array<double, 6>& n) { return {n[0], n[1], n[2]}; }
+Vector3d Second(const std::array<double, 6>& n) { return {n[3], n[4], n[5]}; }
+
+std::array<double, 6> SixNormals(const TriadStream& s, std::uint64_t sample, std::uint64_t slot) {
+  return s.random.SixNormals(sample, s.first_slot + slot);
+}
+
+/// Three numbers even on (-1/2, 1/2).
+Vector3d Even3(const TriadStream& s, std::uint64_t sample, std::uint64_t slot) {
+  const auto u = s.random.Uniforms(sample, s.first_slot + slot);
+  return Vector3d(u[0], u[1], u[2]) - Vector3d::Constant(0.5);
+}
+
+Matrix3d DrawMisalignment(double sd, const TriadStream& stream) {
+  Matrix3d m = Matrix3d::Zero();
+  const auto n = SixNormals(stream, 0, kMisalignmentSlot);
+  m << 0, n[0], n[1], n[2], 0, n[3], n[4], n[5], 0;
+  return sd * m;
+}
+
+TriadCurvature MakeCurvature(const TriadErrorParams& p) {
+  TriadCurvature c{p.scale_second_order, 0.5 * p.scale_asymmetry, p.vibration_rectification};
+  c.on = !(c.second_order.isZero(0) && c.half_asymmetry.isZero(0) && c.rectification.isZero(0));
+  return c;
+}
+
+Vector3d CalcCurvature(const Vector3d& x, const Vector3d& f, const TriadCurvature& c) {
+  const Vector3d size = x.cwiseAbs();
+  const Vector3d squares = c.whole_force ? Vector3d::Constant(f.squaredNorm()) : Vector3d(f.cwiseAbs2());
+  return c.second_order.cwiseProduct(size).cwiseProduct(x) + c.half_asymmetry.cwiseProduct(size) +
+         c.rectification.cwiseProduct(squares);
+}
+
+void MakeDrift(const TriadErrorParams& p, double dt_s, TriadErrorCoefficients& c) {
+  c.markov = MakeGaussMarkov(p.gauss_markov_sd, p.gauss_markov_time_s, dt_s);
+  c.scale_drift = MakeGaussMarkov(p.scale_instability, p.scale_instability_time_s, dt_s);
+  c.bias_per_K = p.temperature_bias;
+  c.scale_per_K = p.temperature_scale;
+  c.ramp = dt_s * p.rate_ramp;
+  c.quantum_rate = std::sqrt(12.0) * p.quantisation / dt_s;
+  c.has_deterministic_drift = !(c.bias_per_K.isZero(0) && c.ramp.isZero(0));
+  c.has_scale_drift = !c.scale_per_K.isZero(0) || c.scale_drift.sd > 0;
+}
+
+void StepMarkov(TriadErrorState& state, std::uint64_t k, const TriadStream& stream,
+                const TriadErrorCoefficients& c) {
+  const auto n = SixNormals(stream, k, kMarkovSlot);
+  state.markov = c.markov.decay * state.markov + c.markov.drive * First(n);
+  state.scale_markov = c.scale_drift.decay * state.scale_markov + c.scale_drift.drive * Second(n);
+}
+
+}  // namespace
 
 TriadErrorCoefficients MakeCoefficients(const TriadErrorParams& p, Rate rate, const TriadStream& stream) {
   const double dt = rate.Period_s();
   const Vector3d scale = p.scale_error + p.scale_error_sd * Normal3(stream, 0, kScaleSlot);
   TriadErrorCoefficients c;
   c.sensitivity = Matrix3d::Identity() + p.misalignment;
+  if (p.misalignment_sd > 0) c.sensitivity += DrawMisalignment(p.misalignment_sd, stream);
   c.sensitivity.diagonal() += scale;
   c.bias = p.bias + p.bias_sd * Normal3(stream, 0, kBiasSlot);
   c.noise_sd = p.noise / std::sqrt(dt);
@@ -104,6 +126,10 @@ TriadErrorCoefficients MakeCoefficients(const TriadErrorParams& p, Rate rate, co
   c.walk_sd = p.rate_random_walk * std::sqrt(dt);
   if (p.range) c.output.range = *p.range;
   c.output.resolution = p.resolution;
+  c.curvature = MakeCurvature(p);
+  c.g_sensitivity = p.g_sensitivity;
+  c.has_g_sensitivity = !p.g_sensitivity.isZero(0);
+  MakeDrift(p, dt, c);
   return c;
 }
 
@@ -111,6 +137,10 @@ TriadErrorState MakeState(const TriadErrorCoefficients& c, const TriadStream& st
   TriadErrorState state;
   state.poles = PoleNormals(stream, 0, kPoleStartSlot);
   for (Vector3d& pole : state.poles) pole *= c.pole_sd;
+  const auto n = SixNormals(stream, 0, kStartSlot);
+  state.markov = c.markov.sd * First(n);
+  state.scale_markov = c.scale_drift.sd * Second(n);
+  state.rounding = Even3(stream, 0, kRoundingStartSlot);
   return state;
 }
 
@@ -119,17 +149,53 @@ Vector3d CalcBias(const TriadErrorState& state, const TriadErrorCoefficients& c)
   if (c.pole_sd > 0) {
     for (const Vector3d& pole : state.poles) bias += pole;
   }
+  if (c.markov.sd > 0) bias += state.markov;
+  if (c.has_deterministic_drift) bias += state.deterministic_drift;
   return bias;
 }
 
-Vector3d StepError(TriadErrorState& state, std::int64_t k, const TriadStream& stream,
-                   const TriadErrorCoefficients& c) {
+void StepDrift(TriadErrorState& state, std::int64_t k, const TriadStream& stream,
+               const TriadErrorCoefficients& c, double warming_K) {
   const auto sample = static_cast<std::uint64_t>(k);
   if (k > 0 && c.walk_sd > 0) state.walk += c.walk_sd * Normal3(stream, sample, kWalkSlot);
   if (k > 0 && c.pole_sd > 0) StepPoles(state, sample, stream, c);
-  Vector3d error = CalcBias(state, c);
-  if (c.noise_sd > 0) error += c.noise_sd * Normal3(stream, sample, kNoiseSlot);
-  return error;
+  if (k > 0 && (c.markov.sd > 0 || c.scale_drift.sd > 0)) StepMarkov(state, sample, stream, c);
+  if (c.has_deterministic_drift) {
+    state.deterministic_drift = warming_K * c.bias_per_K + static_cast<double>(k) * c.ramp;
+  }
+  if (c.has_scale_drift) state.scale_drift = warming_K * c.scale_per_K + state.scale_markov;
+}
+
+Vector3d StepWhite(TriadErrorState& state, std::int64_t k, const TriadStream& stream,
+                   const TriadErrorCoefficients& c) {
+  const auto sample = static_cast<std::uint64_t>(k);
+  Vector3d white = Vector3d::Zero();
+  if (c.noise_sd > 0) white = c.noise_sd * Normal3(stream, sample, kNoiseSlot);
+  if (c.quantum_rate > 0) {
+    const Vector3d before = state.rounding;
+    state.rounding = Even3(stream, sample, kRoundingSlot);
+    white += c.quantum_rate * (state.rounding - before);
+  }
+  return white;
+}
+
+Vector3d StepError(TriadErrorState& state, std::int64_t k, const TriadStream& stream,
+                   const TriadErrorCoefficients& c, double warming_K) {
+  StepDrift(state, k, stream, c, warming_K);
+  return CalcBias(state, c) + StepWhite(state, k, stream, c);
+}
+
+Vector3d DrawStepNoise(std::int64_t n, const TriadStream& stream) {
+  return First(SixNormals(stream, static_cast<std::uint64_t>(n), kStepNoiseSlot));
+}
+
+Vector3d CalcResponse(const Vector3d& x, const Vector3d& f, const TriadErrorState& state,
+                      const TriadErrorCoefficients& c) {
+  Vector3d y = c.sensitivity * x;
+  if (c.has_scale_drift) y += state.scale_drift.cwiseProduct(x);
+  if (c.has_g_sensitivity) y += c.g_sensitivity * f;
+  if (c.curvature.on) y += CalcCurvature(x, f, c.curvature);
+  return y;
 }
 
 }  // namespace piperun::sim
