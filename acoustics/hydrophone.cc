@@ -43,18 +43,23 @@ class Hydrophone::Impl {
         largest_code_(static_cast<double>(params.largest_code())),
         frames_(CalcFrameSize(params.rate_Hz), params.rate_Hz, random),
         spectrum_(scene, params, frames_.bin_width_Hz(), frames_.bins()),
-        psd_(frames_.bins()) {}
+        impacts_(scene.ambient.impacts, scene.ball, scene.water.density_kg_m3, rate_, params.high_pass_Hz,
+                 random),
+        psd_(frames_.bins()),
+        mixed_(frames_.hop()) {}
 
   Rate rate() const { return rate_; }
   std::int64_t hop_samples() const { return static_cast<std::int64_t>(frames_.hop()); }
   std::int64_t clipped_samples() const { return clipped_samples_; }
+
+  void Add(const Knock& knock) { impacts_.Add(knock); }
 
   void Render(const ListenerAt& listener, std::span<std::int32_t> counts) {
     if (next_frame_ == 0) AdvanceFrame(listener);  // what frame 0 completes lies before sample 0
     while (!counts.empty()) {
       if (ready_.empty()) ready_ = AdvanceFrame(listener);
       const std::size_t n = std::min(counts.size(), ready_.size());
-      Quantise(ready_.first(n), counts.first(n));
+      Quantise(MixKnocks(ready_.first(n)), counts.first(n));
       counts = counts.subspan(n);
       ready_ = ready_.subspan(n);
     }
@@ -71,6 +76,13 @@ class Hydrophone::Impl {
     return frames_.Advance(next_frame_++, psd_);
   }
 
+  std::span<const float> MixKnocks(std::span<const float> pressure_Pa) {
+    std::copy(pressure_Pa.begin(), pressure_Pa.end(), mixed_.begin());
+    const std::span<float> mixed = std::span(mixed_).first(pressure_Pa.size());
+    impacts_.Render(mixed);
+    return mixed;
+  }
+
   void Quantise(std::span<const float> pressure_Pa, std::span<std::int32_t> counts) {
     for (std::size_t i = 0; i < counts.size(); ++i) {
       const double code = RoundToEven(counts_per_Pa_ * static_cast<double>(pressure_Pa[i]));
@@ -84,7 +96,9 @@ class Hydrophone::Impl {
   double largest_code_;
   GaussianFrames frames_;
   ListenerSpectrum spectrum_;
+  ImpactSound impacts_;
   std::vector<float> psd_;
+  std::vector<float> mixed_;
   std::int64_t next_frame_ = 0;
   std::span<const float> ready_;  // completed samples not yet handed out
   std::int64_t clipped_samples_ = 0;
@@ -101,6 +115,8 @@ Duration Hydrophone::lookahead() const {
   // sample times are rounded to the nanosecond one by one: a difference may be one longer
   return SampleOffset(impl_->hop_samples(), impl_->rate()) + Duration{1};
 }
+
+void Hydrophone::Add(const Knock& knock) { impl_->Add(knock); }
 
 void Hydrophone::Render(const ListenerAt& listener, std::span<std::int32_t> counts) {
   impl_->Render(listener, counts);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include "acoustics/impact.h"
 #include "acoustics/scene.h"
 #include "base/params.h"
 #include "base/random.h"
@@ -51,13 +52,18 @@ double CalcConverterNoisePsd(const HydrophoneParams& params);
 /// from frame to frame, 0.3 dB on a slope of 10 dB/m. Bins lie 16 Hz apart; DC and the Nyquist bin are
 /// silent. Correlations longer than a frame (echoes, tones) cannot be made this way.
 ///
+/// Knocks on the ball are added before the converter (acoustics/impact.h). A record without any is the same
+/// as if they did not exist.
+///
 /// Random numbers are keyed by (stream, frame, bin): the samples do not depend on the size of the blocks. Of
-/// the stream, samples are frames and slots 0 to N/8 bins. Rendering does not allocate.
+/// the stream, samples are frames and slots 0 to N/8 bins; slots from ImpactSound::kFirstSlot on are the
+/// knocks'. Rendering does not allocate.
 class Hydrophone {
  public:
   using ListenerAt = std::function<ListenerState(TrueTime)>;
 
-  /// Parameters within the ranges of their Visit. Throws as HydrophoneParams::Check does.
+  /// Parameters within the ranges of their Visit. Throws as HydrophoneParams::Check and
+  /// ImpactParams::Check do.
   Hydrophone(const HydrophoneParams& params, const AcousticScene& scene, const RandomStream& random);
   ~Hydrophone();
   Hydrophone(Hydrophone&&) noexcept;
@@ -65,6 +71,9 @@ class Hydrophone {
   Rate rate() const;
   /// How far beyond a block's last sample the listener is asked for at most: half a frame.
   Duration lookahead() const;
+  /// A knock on the ball, to be told before Render reaches the sample at or after its beginning; aborts when
+  /// it comes too late.
+  void Add(const Knock& knock);
   /// Next counts.size() samples; sample n is at SampleTime(n, rate). The listener is asked for once per half
   /// frame, at increasing times from zero on; where its state is not finite (a run that has gone wrong) the
   /// frame is silent. Clipped samples are counted.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "acoustics/ambient.h"
+#include "acoustics/impact.h"
 #include "acoustics/propagation.h"
 #include "acoustics/source.h"
 #include "base/water.h"
@@ -32,12 +33,13 @@ struct SoundingLeak {
   PipePlace place() const { return {pipe, s_m}; }
 };
 
-/// The acoustic world of one run: all pipes of the network, its leaks, its background.
+/// The acoustic world of one run: all pipes of the network, its leaks, its background, the ball.
 struct AcousticScene {
   std::vector<AcousticPipe> pipes;
   std::vector<SoundingLeak> leaks;
   AmbientParams ambient;
   WaterProperties water;
+  StruckBall ball;  ///< that the hydrophone sits in
 };
 
 /// Spectrum at the hole, p = Zc/2 q in each direction of the pipe that goes on both ways:

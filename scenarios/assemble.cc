@@ -41,6 +41,8 @@ void BuildScene(const Scenario& scenario, Assembly& assembly) {
   acoustics::AcousticScene& scene = assembly.scene;
   scene.ambient = scenario.ambient;
   scene.water = assembly.water;
+  scene.ball = {scenario.ball.radius_m, scenario.ball.mass_kg(),
+                scenario.ball.contact_stiffness_N_m.has_value()};
   if (!assembly.pipeline) return;
   const Pipeline& pipeline = *assembly.pipeline;
   for (const Pipe& pipe : pipeline.network.pipes()) {

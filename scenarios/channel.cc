@@ -1,6 +1,7 @@
 #include "scenarios/channel.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace piperun::scenarios {
 namespace {
@@ -30,7 +31,9 @@ const Measurement* SensorChannel::Take(const sim::TruthWindow& window) {
 HydrophoneChannel::HydrophoneChannel(int index, const acoustics::HydrophoneParams& params,
                                      acoustics::AcousticScene scene, const RandomStream& random,
                                      const ClockModel& clock, const Network& network)
-    : hydrophone_(params, std::move(scene), random),
+    : soft_ball_(scene.ball.gives_way),
+      rigid_contact_time_s_(scene.ambient.impacts.contact_time_s),
+      hydrophone_(params, std::move(scene), random),
       clock_(clock),
       network_(network),
       counts_(static_cast<std::size_t>(params.block_samples)) {
@@ -53,6 +56,12 @@ Duration HydrophoneChannel::history() const {
          hydrophone_.lookahead();
 }
 
+void HydrophoneChannel::Hear(const sim::ContactEvent& event) {
+  const Duration since_start = clock_.ToRobot(event.begin) - StampOf(0);
+  hydrophone_.Add({TrueTime(since_start), event.impulse_W_N_s.norm(),
+                   CalcContactTime_s(event, soft_ball_, rigid_contact_time_s_)});
+}
+
 const Measurement* HydrophoneChannel::Take(const sim::TruthWindow& window) {
   const RobotTime start = StampOf(0);
   const auto listener = [&](TrueTime recorder_time) {
@@ -63,6 +72,11 @@ const Measurement* HydrophoneChannel::Take(const sim::TruthWindow& window) {
   next_sample_ += static_cast<std::int64_t>(counts_.size());
   std::get<AudioBlock>(measurement_.value).stamp = StampOf(next_sample_ - 1);
   return &measurement_;
+}
+
+double CalcContactTime_s(const sim::ContactEvent& event, bool soft_ball, double rigid_s) {
+  if (!soft_ball || !(event.peak_force_N > 0)) return rigid_s;
+  return std::numbers::pi / 2 * event.impulse_W_N_s.norm() / event.peak_force_N;
 }
 
 acoustics::ListenerState CalcListener(const sim::TruthState& truth, const Network& network) {

@@ -7,6 +7,7 @@
 #include "acoustics/hydrophone.h"
 #include "base/measurement.h"
 #include "base/network.h"
+#include "sim/motion.h"
 #include "sim/sensor.h"
 #include "sim/truth.h"
 
@@ -19,6 +20,11 @@ class Channel {
   /// When the next measurement is complete, and how far beyond that the truth must reach to take it.
   virtual TrueTime due() const = 0;
   virtual Duration lookahead() const = 0;
+  /// How much longer to wait while the motion goes on, until all collisions up to due() + lookahead() are
+  /// told.
+  virtual Duration contact_delay() const { return Duration(0); }
+  /// A collision of the ball, told before the measurements that it begins in are taken.
+  virtual void Hear(const sim::ContactEvent&) {}
   /// The longest stretch of truth a measurement looks back on.
   virtual Duration history() const = 0;
   /// Takes the next measurement; valid until the next call. Null: it was lost on its way.
@@ -43,13 +49,15 @@ class SensorChannel : public Channel {
 };
 
 /// A channel over the hydrophone. Its converter runs on the robot's clock: sample n is taken when that clock
-/// shows n / rate after the start. Keeps a reference to the network.
+/// shows n / rate after the start. Collisions are heard as knocks. Keeps a reference to the network.
 class HydrophoneChannel : public Channel {
  public:
   HydrophoneChannel(int index, const acoustics::HydrophoneParams& params, acoustics::AcousticScene scene,
                     const RandomStream& random, const ClockModel& clock, const Network& network);
   TrueTime due() const override;
   Duration lookahead() const override;
+  Duration contact_delay() const override { return sim::kContactEventDelay; }
+  void Hear(const sim::ContactEvent& event) override;
   Duration history() const override;
   const Measurement* Take(const sim::TruthWindow& window) override;
   std::int64_t clipped_samples() const { return hydrophone_.clipped_samples(); }
@@ -57,6 +65,8 @@ class HydrophoneChannel : public Channel {
  private:
   RobotTime StampOf(std::int64_t sample) const;
 
+  bool soft_ball_;
+  double rigid_contact_time_s_;
   acoustics::Hydrophone hydrophone_;
   ClockModel clock_;
   const Network& network_;
@@ -68,5 +78,9 @@ class HydrophoneChannel : public Channel {
 /// What a hydrophone in the ball knows of its surroundings: the bore at its place, and its slip |u - v . t|
 /// with t the pipe's tangent along the way taken.
 acoustics::ListenerState CalcListener(const sim::TruthState& truth, const Network& network);
+
+/// How long a collision takes, as a half-sine of its impulse J and its peak force F, T = pi J/(2 F), when the
+/// ball is soft: its contact is resolved in time. A rigid ball's is not, and takes `rigid_s`.
+double CalcContactTime_s(const sim::ContactEvent& event, bool soft_ball, double rigid_s);
 
 }  // namespace piperun::scenarios

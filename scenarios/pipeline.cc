@@ -59,12 +59,21 @@ Pipeline BuildSeries(const Scenario& scenario, const WaterProperties& water) {
   std::vector<Leak> leaks = MakeListedLeaks(scenario, network);
   const std::vector<Leak> drawn = DrawLeaks(scenario, network, plan, leaks);
   leaks.insert(leaks.end(), drawn.begin(), drawn.end());
+  sim::LocalLosses losses{{}, scenario.flow.bend_losses};
+  for (const PipeEntry& pipe : scenario.network.pipes) losses.pipe_coefficients.push_back(pipe.minor_loss);
   sim::SteadyFlow flow = sim::SolveSteadyFlow(network, Route(network, plan),
                                               {scenario.flow.inlet_m3_s, scenario.flow.inlet_pressure_Pa},
-                                              leaks, water, scenario.gravity_m_s2);
-  return {scenario.network, std::move(network),    std::move(flow.timeline),
-          std::move(leaks), std::move(flow.leaks), stops.launch,
-          stops.retrieve,   std::move(plan),       {}};
+                                              leaks, water, scenario.gravity_m_s2, losses);
+  return {.drawing = scenario.network,
+          .network = std::move(network),
+          .flow = std::move(flow.timeline),
+          .leaks = std::move(leaks),
+          .leak_states = std::move(flow.leaks),
+          .launch_node = stops.launch,
+          .retrieve_node = stops.retrieve,
+          .plan = std::move(plan),
+          .notes = {},
+          .warnings = std::move(flow.warnings)};
 }
 
 /// The hydraulics of an EPANET file from its beginning to `until_s` (or its own end), instant by instant.

@@ -1,6 +1,7 @@
 #include "scenarios/reference.h"
 
 #include "base/number.h"
+#include "scenarios/ball_presets.h"
 #include "scenarios/scenario.h"
 #include "scenarios/unit_alias.h"
 
@@ -89,6 +90,13 @@ void WriteKinds(std::string& out, const std::string& title, const std::vector<Ki
   }
 }
 
+void WritePresets(std::string& out) {
+  out += "\n## Ball presets\n\nValues of `ball: {preset: NAME}`, with their sources in `assets/balls`.\n\n";
+  for (const BallPreset& preset : BallPresets()) {
+    out += "- `" + std::string(preset.name) + "`: " + preset.description + ".\n";
+  }
+}
+
 }  // namespace
 
 std::string WriteReference() {
@@ -100,6 +108,7 @@ std::string WriteReference() {
   Scenario scenario;
   ReferenceWriter writer(out, "");
   scenario.Visit(writer);
+  WritePresets(out);
   WriteKinds(out, "Motion", MotionOptions());
   WriteKinds(out, "Sensor", SensorOptions());
   WriteKinds(out, "Leak sound", LeakSoundOptions());

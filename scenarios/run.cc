@@ -45,7 +45,7 @@ std::size_t WindowCapacity(const Assembly& assembly) {
   Duration ahead{0};
   for (const auto& channel : assembly.channels) {
     longest = std::max(longest, channel->history());
-    ahead = std::max(ahead, channel->lookahead());
+    ahead = std::max(ahead, channel->lookahead() + channel->contact_delay());
   }
   return static_cast<std::size_t>(std::ceil(Seconds(longest + ahead) * assembly.motion->rate().Hz())) + 8;
 }
@@ -91,6 +91,7 @@ class RunLoop {
         truth_file_(folder.staging() / "truth" / "ball.csv") {
     for (const auto& channel : assembly.channels) {
       lookahead_ = std::max(lookahead_, channel->lookahead());
+      contact_delay_ = std::max(contact_delay_, channel->contact_delay());
       due_.push_back(channel->due());
     }
     WriteTextFile(folder.staging() / "estimator_input.yaml",
@@ -103,8 +104,11 @@ class RunLoop {
     Push(motion.state());
     while (motion.status() == sim::MotionStatus::kRunning && motion.state().time < limit) {
       motion.Step();
+      Tell(motion.contact_events());
       Push(motion.state());
     }
+    Deliver(Duration(0));  // no collision can be told any more
+    truth_.WriteUntil(window_.latest_time(), window_);
   }
 
   RunResult Finish() {
@@ -112,6 +116,7 @@ class RunLoop {
     result.status = Name(assembly_.motion->status());
     result.duration_s = Seconds(assembly_.motion->state().time);
     result.leaks = truth_.Close(FindHydrophone(scenario_));
+    result.contacts = truth_.contacts();
     for (const auto& writer : writers_) writer->Close();
     result.estimators = bank_.Finish(result.leaks, scenario_.score.match_radius_m,
                                      [this] { return OpenTruth(truth_file_, assembly_.clock); });
@@ -119,11 +124,24 @@ class RunLoop {
   }
 
  private:
+  void Tell(std::span<const sim::ContactEvent> events) {
+    for (const sim::ContactEvent& event : events) {
+      truth_.Record(event);
+      for (const auto& channel : assembly_.channels) channel->Hear(event);
+    }
+  }
+
   void Push(const sim::TruthState& state) {
     window_.Push(state);
-    truth_.Record(window_);
-    DeliverUntil(window_.latest_time() - lookahead_);
+    truth_.Watch(window_);
+    Deliver(contact_delay_);
     if (window_.last() % 1024 == 0) Report(state);
+  }
+
+  void Deliver(Duration contact_delay) {
+    const TrueTime horizon = window_.latest_time() - lookahead_ - contact_delay;
+    DeliverUntil(horizon);
+    truth_.WriteUntil(horizon, window_);
   }
 
   /// All measurements complete by `horizon`, by time and then channel name.
@@ -167,6 +185,7 @@ class RunLoop {
   EstimatorBank bank_;
   std::filesystem::path truth_file_;
   Duration lookahead_{0};
+  Duration contact_delay_{0};
   std::vector<TrueTime> due_;  ///< of each channel's next measurement
 };
 
@@ -179,7 +198,6 @@ void DescribeRoute(const Assembly& assembly, RunResult& result) {
   };
   for (const RouteLeg& leg : assembly.pipeline->plan) add(leg.pipe, result.planned_pipes);
   result.notes = assembly.pipeline->notes;
-  for (std::string& note : assembly.motion->notes()) result.notes.push_back(std::move(note));
   if (const sim::Way* way = assembly.motion->way()) {
     for (const sim::WayLeg& leg : way->legs()) {
       // a ball that arrives at a node amid the network has just entered the pipe beyond
@@ -213,6 +231,8 @@ RunResult RunAssembled(const Scenario& scenario, const RunOptions& options, cons
   loop.Run();
   RunResult result = loop.Finish();
   DescribeRoute(*assembly, result);
+  if (assembly->pipeline) result.warnings = assembly->pipeline->warnings;
+  for (std::string& warning : assembly->motion->warnings()) result.warnings.push_back(std::move(warning));
   return result;
 }
 

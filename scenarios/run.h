@@ -4,9 +4,11 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "scenarios/contact_log.h"
 #include "scenarios/scenario.h"
 #include "scenarios/score.h"
 
@@ -39,8 +41,10 @@ struct RunResult {
   double route_length_m = 0;  ///< of the pipes of the way taken
   std::vector<std::string> route_pipes;
   std::vector<std::string> planned_pipes;
-  std::vector<std::string> notes;  ///< what was assumed where the input is silent
+  std::vector<std::string> notes;     ///< what was assumed where the input is silent
+  std::vector<std::string> warnings;  ///< where the motion went beyond what its laws or its step are good for
   std::vector<TrueLeak> leaks;
+  std::optional<ContactSummary> contacts;  ///< nothing: no pipes
   std::vector<EstimatorResult> estimators;
   std::map<std::string, std::string> file_hashes;  ///< SHA-256 by path in the folder
   std::string json;                                ///< run.json, to the byte

@@ -66,6 +66,17 @@ Json ToJson(const EstimatorResult& result) {
           {"false_alarms", result.leaks.false_alarms}};
 }
 
+Json TruthToJson(const RunResult& result) {
+  Json leaks = Json::array();
+  for (const TrueLeak& leak : result.leaks) leaks.push_back(ToJson(leak));
+  Json truth{{"leaks", leaks}};
+  if (result.contacts) {
+    truth["contacts"] = {{"count", result.contacts->count},
+                         {"largest_impulse_N_s", Number(result.contacts->largest_impulse_N_s)}};
+  }
+  return truth;
+}
+
 }  // namespace
 
 std::string_view Version() { return PIPERUN_VERSION; }
@@ -80,8 +91,6 @@ std::map<std::string, std::string> HashFiles(const fs::path& folder) {
 }
 
 std::string WriteRunJson(const RunResult& result) {
-  Json leaks = Json::array();
-  for (const TrueLeak& leak : result.leaks) leaks.push_back(ToJson(leak));
   Json estimators = Json::object();
   for (const EstimatorResult& estimator : result.estimators) estimators[estimator.name] = ToJson(estimator);
   const Json json{
@@ -99,7 +108,8 @@ std::string WriteRunJson(const RunResult& result) {
         {"pipes", result.route_pipes},
         {"planned", result.planned_pipes}}},
       {"notes", result.notes},
-      {"truth", {{"leaks", leaks}}},
+      {"warnings", result.warnings},
+      {"truth", TruthToJson(result)},
       {"estimators", estimators},
       {"hash", result.file_hashes},
   };
@@ -119,6 +129,11 @@ RunResult LoadRunSummary(const std::string& text) {
     result.route_pipes = json.at("route").at("pipes").get<std::vector<std::string>>();
     result.planned_pipes = json.at("route").at("planned").get<std::vector<std::string>>();
     result.notes = json.at("notes").get<std::vector<std::string>>();
+    result.warnings = json.value("warnings", std::vector<std::string>{});  // older folders have none
+    if (const Json::json_pointer contacts("/truth/contacts"); json.contains(contacts)) {
+      result.contacts = {json.at(contacts).at("count").get<std::int64_t>(),
+                         json.at(contacts).at("largest_impulse_N_s").get<double>()};
+    }
     return result;
   } catch (const Json::exception& e) {
     throw InputError(std::string("this is not the run.json of a run: ") + e.what(), "", "run.json");

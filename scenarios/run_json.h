@@ -15,8 +15,8 @@ std::map<std::string, std::string> HashFiles(const std::filesystem::path& folder
 
 std::string WriteRunJson(const RunResult& result);
 
-/// What a run.json says of the run itself: scenario, seed, run index, status, duration, route. Throws
-/// InputError when it is not the run.json of a run.
+/// What a run.json says of the run itself: scenario, seed, run index, status, duration, route,
+/// collisions. Throws InputError when it is not the run.json of a run.
 RunResult LoadRunSummary(const std::string& json);
 
 /// The value at a JSON pointer as a number, and as text; nothing when it is not there.

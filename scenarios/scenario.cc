@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "scenarios/ball_presets.h"
 #include "scenarios/materials.h"
 
 namespace piperun::scenarios {
@@ -51,6 +52,11 @@ void PipeEntry::Visit(ParamVisitor& v) {
   v.Flag({"fit_bends", "Bends that do not fit are made tighter or left out instead of refused."}, fit_bends);
   v.Flag({"passable", "Whether a ball gets through; not through pumps, closed and throttling valves."},
          passable);
+  v.Number(
+      {"minor_loss",
+       "K of everything in the pipe that costs head but is neither friction nor a bend, spread along it: "
+       "h = K U^2/(2g). An EPANET file brings its own."},
+      {.min = 0, .max = 1e4}, minor_loss);
 }
 
 void NetworkParams::Visit(ParamVisitor& v) {
@@ -82,6 +88,10 @@ void FlowParams::Visit(ParamVisitor& v) {
   v.Number(
       {"inlet_pressure_Pa", "Gauge pressure on the axis at the launch node; an EPANET file brings its own."},
       {.min = 0, .max = 1e8}, inlet_pressure_Pa);
+  v.Flag({"bend_losses",
+          "Whether bends cost head beyond their friction (Ito 1960); an EPANET file brings its own minor "
+          "losses."},
+         bend_losses);
   v.Number({"launch_time_s", "EPANET file: when in its extended period the ball is launched."},
            {.min = 0, .max = 1e9}, launch_time_s);
 }
@@ -116,6 +126,15 @@ void RandomLeaksParams::Visit(ParamVisitor& v) {
   v.Number({"min_spacing_m", "Least distance from other leaks on the pipe and from its ends."},
            Range::Between(0.01, 1e4), min_spacing_m);
   v.Number({"cd", "Discharge coefficient of the holes."}, {.min = 0, .max = 1, .min_open = true}, cd);
+}
+
+void BallEntry::Visit(ParamVisitor& v) {
+  const std::string before = preset;
+  v.Choice(
+      {"preset", "Ball of the library that the other keys' defaults are those of; none: as listed here."},
+      BallPresetNames(), preset);
+  if (preset != before) sim::BallParams::operator=(FindBall(preset));
+  sim::BallParams::Visit(v);
 }
 
 void ViaEntry::Visit(ParamVisitor& v) { v.Text({"node", "Node on the way.", true}, node); }

@@ -50,6 +50,7 @@ struct PipeEntry {
   std::optional<double> length_m;  ///< nothing: as drawn
   bool fit_bends = false;
   bool passable = true;
+  double minor_loss = 0;
   void Visit(ParamVisitor& v);
 };
 
@@ -73,6 +74,7 @@ struct NetworkSource : NetworkParams {
 struct FlowParams {
   double inlet_m3_s = 0;
   double inlet_pressure_Pa = 0;
+  bool bend_losses = true;
   double launch_time_s = 0;
   void Visit(ParamVisitor& v);
 };
@@ -109,6 +111,12 @@ struct RandomLeaksParams {
 
 struct ViaEntry {
   std::string node;
+  void Visit(ParamVisitor& v);
+};
+
+/// The ball. Read, it starts from the named preset of the library; what the file says on top of that counts.
+struct BallEntry : sim::BallParams {
+  std::string preset = "none";
   void Visit(ParamVisitor& v);
 };
 
@@ -186,7 +194,7 @@ struct Scenario {
   RandomLeaksParams random_leaks;
   std::vector<WallFeatureEntry> wall_features;
   KindEntry motion{MotionOptions, "ball_in_pipe"};
-  sim::BallParams ball;
+  BallEntry ball;
   MissionParams mission;
   std::vector<SensorEntry> sensors;
   std::vector<EstimatorEntry> estimators;

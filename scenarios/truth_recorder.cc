@@ -51,6 +51,13 @@ void WriteLeak(OutputFile& file, const TrueLeak& leak) {
                << leak.p_W << leak.flow_m3_s << leak.t_cpa_ns << leak.snr_dB << kEndOfRow;
 }
 
+/// Of the wall features, by index.
+std::vector<std::string> FeatureIds(const Assembly& assembly) {
+  std::vector<std::string> ids;
+  for (const WallFeatureLabel& feature : assembly.wall_features) ids.push_back(feature.id);
+  return ids;
+}
+
 }  // namespace
 
 TruthRecorder::TruthRecorder(const Assembly& assembly, Rate truth_rate,
@@ -64,15 +71,25 @@ TruthRecorder::TruthRecorder(const Assembly& assembly, Rate truth_rate,
       approaches_(assembly.pipeline ? assembly.pipeline->leaks.size() : 0) {
   ball_.Append(kBallHeader);
   groundtruth_.Append(kGroundtruthHeader);
+  if (assembly.motion->way())
+    contacts_.emplace(truth_folder / "contacts.csv", *assembly.network(), FeatureIds(assembly));
 }
 
-void TruthRecorder::Record(const sim::TruthWindow& window) {
+std::optional<ContactSummary> TruthRecorder::contacts() const {
+  return contacts_ ? std::optional(contacts_->summary()) : std::nullopt;
+}
+
+void TruthRecorder::Watch(const sim::TruthWindow& window) {
+  for (std::size_t i = 0; i < approaches_.size(); ++i) UpdateApproach(i, window);
+  if (contacts_) contacts_->WriteUntil(window.latest_time());
+}
+
+void TruthRecorder::WriteUntil(TrueTime horizon, const sim::TruthWindow& window) {
   for (;; ++next_row_) {
     const TrueTime due = SampleTime(next_row_, truth_rate_);
-    if (due > window.latest_time()) break;
+    if (due > horizon) return;
     WriteRow(sim::Interpolate(window, due));
   }
-  for (std::size_t i = 0; i < approaches_.size(); ++i) UpdateApproach(i, window);
 }
 
 void TruthRecorder::WriteRow(const sim::TruthState& state) {
@@ -130,6 +147,7 @@ std::vector<TrueLeak> TruthRecorder::Close(const acoustics::HydrophoneParams* hy
   ball_.Close();
   groundtruth_.Close();
   if (!assembly_.wall_features.empty()) WriteFeatures();
+  if (contacts_) contacts_->Close();
   OutputFile file(truth_folder_ / "leaks.csv");
   file.Append(kLeaksHeader);
   std::vector<TrueLeak> leaks;

@@ -5,21 +5,28 @@
 #include <vector>
 
 #include "scenarios/assemble.h"
+#include "scenarios/contact_log.h"
 #include "scenarios/output_file.h"
 #include "scenarios/score.h"
 #include "sim/truth.h"
 
 namespace piperun::scenarios {
 
-/// Writes truth/ball.csv and EuRoC's state_groundtruth_estimate0, and watches for the closest approach to
-/// every leak.
+/// Writes truth/ball.csv, truth/contacts.csv and EuRoC's state_groundtruth_estimate0, and watches for the
+/// closest approach to every leak.
 class TruthRecorder {
  public:
   TruthRecorder(const Assembly& assembly, Rate truth_rate, const std::filesystem::path& truth_folder,
                 const std::filesystem::path& groundtruth_folder);
 
   /// Call after every push into the window.
-  void Record(const sim::TruthWindow& window);
+  void Watch(const sim::TruthWindow& window);
+  /// Writes the rows up to `horizon`. Call when the inertial sensor has been sampled up to there: the biases
+  /// in a row are those of its last sample.
+  void WriteUntil(TrueTime horizon, const sim::TruthWindow& window);
+  void Record(const sim::ContactEvent& event) { contacts_->Add(event); }
+  /// Of the rows written so far; nothing: no pipes.
+  std::optional<ContactSummary> contacts() const;
   /// Completes the files, writes leaks.csv (and features.csv, where there are any) and returns what leaks.csv
   /// says.
   std::vector<TrueLeak> Close(const acoustics::HydrophoneParams* hydrophone);
@@ -40,6 +47,7 @@ class TruthRecorder {
   std::filesystem::path truth_folder_;
   OutputFile ball_;
   OutputFile groundtruth_;
+  std::optional<ContactLog> contacts_;  ///< when there are pipes
   std::int64_t next_row_ = 0;
   std::vector<std::optional<sim::TruthState>> approaches_;  ///< closest step to each leak so far
 };

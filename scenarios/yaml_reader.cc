@@ -122,7 +122,10 @@ class MapReader : public ParamVisitor {
     if (!found.entry) return;
     const std::string text = ReadScalar(found, "a name");
     if (std::find(allowed.begin(), allowed.end(), text) == allowed.end()) {
-      std::string problem = "'" + text + "' is not known; allowed:";
+      std::string problem = "'" + text + "' is not known; ";
+      const auto near = FindNearestName(text, {allowed.begin(), allowed.end()});
+      if (near) problem += "did you mean '" + *near + "'? ";
+      problem += "allowed:";
       for (const std::string_view name : allowed) problem += " " + std::string(name);
       context_.Refuse(found.entry->value, found.path, problem);
     }

@@ -10,15 +10,9 @@
 #include "base/time.h"
 #include "sim/network_spot.h"
 #include "sim/rotary_inertia.h"
+#include "sim/soft_contact.h"
 
 namespace piperun::sim {
-
-/// A wall or a ball that gives way: the overlap x >= 0 is pressed with k x + c dx/dt >= 0, implicit in the
-/// step.
-struct ContactCompliance {
-  double stiffness_N_m = 0;  ///< k
-  double damping_N_s_m = 0;  ///< c
-};
 
 /// A sphere in a tube, whose mass may lie off its centre B. The mass matrix is the inertial one: the added
 /// mass of the water belongs into it (sim/ball_mass.h).

@@ -5,11 +5,13 @@
 #include <deque>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "base/check.h"
 #include "base/number.h"
+#include "sim/bend_loss.h"
 #include "sim/pipe_flow.h"
 
 namespace piperun::sim {
@@ -22,6 +24,7 @@ constexpr double kUnknownHead = std::numeric_limits<double>::quiet_NaN();
 struct Stream {
   double flow_m3_s = 0;
   double head_m = 0;
+  BendLossRange bend_losses{};
 };
 
 /// What every step along the route needs to know.
@@ -30,6 +33,13 @@ struct Problem {
   std::span<const Leak> leaks;
   const WaterProperties& water;
   double gravity_m_s2;
+  const LocalLosses& losses;
+};
+
+/// A leg of the route with the bends on it, as far as they cost head.
+struct Leg {
+  RouteLeg way;
+  std::vector<BendPart> bends;
 };
 
 std::string LeakKey(std::size_t i, const char* field) { return "leaks[" + std::to_string(i) + "]" + field; }
@@ -95,16 +105,40 @@ double AxisElevation(const Pipe& pipe, double s_m) {
   return EvalCentreline(pipe.centreline[i], s_m).p_W.z();
 }
 
-/// Lets the stream flow `length` along the pipe: h_f = f L/D U^2/(2g).
-FlowReach Advance(const Problem& problem, const Pipe& pipe, double length_m, Stream& stream) {
+/// K of what is not friction between two places along a leg; a bend is within them as a whole or not at all.
+double CalcLocalLoss(const Problem& problem, const Leg& leg, const FlowReach& along, double reynolds,
+                     Stream& stream) {
+  const Pipe& pipe = problem.network.pipe(leg.way.pipe);
+  const double middle_m = 0.5 * (along.s_begin_m + along.s_end_m), length_m = along.s_end_m - along.s_begin_m;
+  double loss = 0;
+  if (!problem.losses.pipe_coefficients.empty()) {
+    loss +=
+        problem.losses.pipe_coefficients[static_cast<std::size_t>(leg.way.pipe)] * length_m / pipe.length_m;
+  }
+  if (reynolds == 0) return loss;
+  for (const BendPart& part : leg.bends) {
+    if (middle_m < part.begin_m || middle_m > part.end_m) continue;
+    const BendShape bend{part.turn_rad, part.radius_m / pipe.radius_m()};
+    loss += CalcExcessBendLoss(bend, reynolds) * part.share * length_m / (part.end_m - part.begin_m);
+    stream.bend_losses.Add(bend, reynolds);
+  }
+  return loss;
+}
+
+/// Lets the stream flow along a leg: h = (f L/D + K) U^2/(2g).
+FlowReach Advance(const Problem& problem, const Leg& leg, double begin_m, double end_m, Stream& stream) {
+  const Pipe& pipe = problem.network.pipe(leg.way.pipe);
   const double speed = stream.flow_m3_s / pipe.area_m2();
   const double reynolds = speed * pipe.diameter_m / problem.water.kinematic_viscosity_m2_s;
   FlowReach reach;
+  reach.s_begin_m = begin_m;
+  reach.s_end_m = end_m;
   reach.flow_m3_s = stream.flow_m3_s;
   reach.friction_factor = CalcFrictionFactor(reynolds, pipe.material.roughness_m / pipe.diameter_m);
   reach.head_begin_m = stream.head_m;
-  stream.head_m -=
-      reach.friction_factor * length_m / pipe.diameter_m * speed * speed / (2 * problem.gravity_m_s2);
+  const double friction = reach.friction_factor * (end_m - begin_m) / pipe.diameter_m;
+  stream.head_m -= (friction + CalcLocalLoss(problem, leg, reach, reynolds, stream)) * speed * speed /
+                   (2 * problem.gravity_m_s2);
   reach.head_end_m = stream.head_m;
   return reach;
 }
@@ -132,17 +166,28 @@ LeakState Discharge(const Problem& problem, std::size_t i, Stream& stream) {
   return {flow, pressure_Pa};
 }
 
-/// Leaks of a pipe in the order in which the stream meets them.
-std::vector<std::size_t> SortLeaks(const Problem& problem, const RouteLeg& leg) {
-  std::vector<std::size_t> order;
+/// Where the stream changes along a leg, and the leak it meets there.
+struct Stop {
+  double along_m = 0;
+  std::optional<std::size_t> leak{};
+};
+
+/// Leaks, the ends of bends and the leg's own end, in the order in which the stream meets them.
+std::vector<Stop> FindStops(const Problem& problem, const Leg& leg) {
+  const double length_m = problem.network.pipe(leg.way.pipe).length_m;
+  std::vector<Stop> stops;
   for (std::size_t i = 0; i < problem.leaks.size(); ++i) {
-    if (problem.leaks[i].pipe == leg.pipe) order.push_back(i);
+    const double s_m = problem.leaks[i].s_m;
+    if (problem.leaks[i].pipe == leg.way.pipe) stops.push_back({leg.way.reversed ? length_m - s_m : s_m, i});
   }
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    const double s_a = problem.leaks[a].s_m, s_b = problem.leaks[b].s_m;
-    return leg.reversed ? s_a > s_b : s_a < s_b;
-  });
-  return order;
+  for (const BendPart& bend : leg.bends) {
+    stops.push_back({bend.begin_m});
+    stops.push_back({bend.end_m});
+  }
+  std::stable_sort(stops.begin(), stops.end(),
+                   [](const Stop& a, const Stop& b) { return a.along_m < b.along_m; });
+  stops.push_back({length_m});
+  return stops;
 }
 
 /// A reach written along the stream, turned into the pipe's own direction.
@@ -155,27 +200,23 @@ FlowReach ReversedReach(const FlowReach& reach, double pipe_length_m) {
   return r;
 }
 
-std::vector<FlowReach> SolveLeg(const Problem& problem, const RouteLeg& leg, Stream& stream,
+std::vector<FlowReach> SolveLeg(const Problem& problem, const Leg& leg, Stream& stream,
                                 std::vector<LeakState>& leaks) {
-  const Pipe& pipe = problem.network.pipe(leg.pipe);
+  constexpr double kNothing_m = 1e-9;  // rounding: no reach is that short
+  const double length_m = problem.network.pipe(leg.way.pipe).length_m;
   std::vector<FlowReach> reaches;
   double done_m = 0;
-  const auto advance_to = [&](double along_m) {
-    if (along_m <= done_m) return;
-    FlowReach reach = Advance(problem, pipe, along_m - done_m, stream);
-    reach.s_begin_m = std::exchange(done_m, along_m);
-    reach.s_end_m = along_m;
-    reaches.push_back(reach);
-  };
-  for (const std::size_t i : SortLeaks(problem, leg)) {
-    const double s = problem.leaks[i].s_m;
-    advance_to(leg.reversed ? pipe.length_m - s : s);
-    leaks[i] = Discharge(problem, i, stream);
+  for (const Stop& stop : FindStops(problem, leg)) {
+    const bool at_end = length_m - stop.along_m < kNothing_m;
+    const double along_m = at_end ? length_m : stop.along_m;
+    if (along_m - done_m > (at_end ? 0 : kNothing_m)) {
+      reaches.push_back(Advance(problem, leg, std::exchange(done_m, along_m), along_m, stream));
+    }
+    if (stop.leak) leaks[*stop.leak] = Discharge(problem, *stop.leak, stream);
   }
-  advance_to(pipe.length_m);
-  if (leg.reversed) {
+  if (leg.way.reversed) {
     std::reverse(reaches.begin(), reaches.end());
-    for (FlowReach& reach : reaches) reach = ReversedReach(reach, pipe.length_m);
+    for (FlowReach& reach : reaches) reach = ReversedReach(reach, length_m);
   }
   return reaches;
 }
@@ -233,8 +274,9 @@ void RequireWholeColumn(const Problem& problem, const Route& route, const FlowTi
 }  // namespace
 
 SteadyFlow SolveSteadyFlow(const Network& network, const Route& route, const InletCondition& inlet,
-                           std::span<const Leak> leaks, const WaterProperties& water, double gravity_m_s2) {
-  const Problem problem{network, leaks, water, gravity_m_s2};
+                           std::span<const Leak> leaks, const WaterProperties& water, double gravity_m_s2,
+                           const LocalLosses& losses) {
+  const Problem problem{network, leaks, water, gravity_m_s2, losses};
   RequireInlet(inlet);
   RequireRoute(problem, route);
   for (std::size_t i = 0; i < leaks.size(); ++i) RequireLeak(problem, route, i);
@@ -243,8 +285,11 @@ SteadyFlow SolveSteadyFlow(const Network& network, const Route& route, const Inl
   std::vector<LeakState> leak_states(leaks.size());
   const double inlet_elevation = route.pieces().front().line.p_begin_W.z();
   Stream stream{inlet.flow_m3_s, inlet_elevation + inlet.pressure_Pa / (water.density_kg_m3 * gravity_m_s2)};
-  for (const RouteLeg& leg : route.legs()) {
-    state.pipes[static_cast<std::size_t>(leg.pipe)] = SolveLeg(problem, leg, stream, leak_states);
+  std::vector<std::vector<BendPart>> bends(route.legs().size());
+  if (losses.bends) bends = FindBends(network, route);
+  for (std::size_t i = 0; i < bends.size(); ++i) {
+    const Leg leg{route.legs()[i], std::move(bends[i])};
+    state.pipes[static_cast<std::size_t>(leg.way.pipe)] = SolveLeg(problem, leg, stream, leak_states);
   }
   FillSidePipes(network, route, state);
 
@@ -252,7 +297,7 @@ SteadyFlow SolveSteadyFlow(const Network& network, const Route& route, const Inl
   for (const Pipe& pipe : network.pipes()) areas.push_back(pipe.area_m2());
   FlowTimeline timeline(std::move(areas), {TrueTime{}}, {std::move(state)});
   RequireWholeColumn(problem, route, timeline);
-  return {std::move(timeline), std::move(leak_states)};
+  return {std::move(timeline), std::move(leak_states), stream.bend_losses.Warnings()};
 }
 
 }  // namespace piperun::sim

@@ -45,6 +45,9 @@ struct ContactEvent {
   int feature = -1;  ///< index of the wall feature; -1: the wall
 };
 
+/// A collision comes to its end, and is told, at most this long after it began.
+inline constexpr Duration kContactEventDelay = std::chrono::milliseconds(100);
+
 /// Everything a motion may need; it keeps references, the caller keeps the objects alive.
 struct MotionContext {
   std::uint64_t seed = 0;
@@ -77,9 +80,10 @@ class Motion {
   virtual Vector3d planned_start_W() const { return state().X_WB.p; }
   /// The way taken so far; null for motions that know no pipes.
   virtual const Way* way() const { return nullptr; }
-  /// What a user should know of how the motion was computed; empty when all went as it should.
-  virtual std::vector<std::string> notes() const { return {}; }
-  /// Collisions that came to their end with the last Step().
+  /// What a user should know of how the motion was computed, a sentence each; empty when all went as it
+  /// should.
+  virtual std::vector<std::string> warnings() const { return {}; }
+  /// Collisions that came to their end with the last Step(); those that a run leaves unfinished are not told.
   virtual std::span<const ContactEvent> contact_events() const { return {}; }
 };
 

@@ -135,8 +135,8 @@ double ScatteredSize::Draw_m(const RandomStream& random, std::uint64_t sample, s
 
 void RequireBelow(double value_m, double limit_m, std::string_view what, const char* key) {
   if (value_m < limit_m) return;
-  throw InputError(FormatNumber(value_m) + " m (scatter of 3 sigma included) is too much; allowed: below " +
-                       FormatNumber(limit_m) + " m, " + std::string(what),
+  throw InputError(FormatNumber(value_m) + " m is too much; allowed: below " + FormatNumber(limit_m) +
+                       " m, " + std::string(what),
                    key);
 }
 

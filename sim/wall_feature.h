@@ -70,7 +70,8 @@ struct ScatteredSize {
   double Draw_m(const RandomStream& random, std::uint64_t sample, std::uint64_t slot) const;
 };
 
-/// Throws InputError for `key` unless value < limit; `what` names the limit.
+/// Throws InputError for `key` unless value < limit; `what` names the limit. Sizes that scatter are held to
+/// it with their largest value.
 void RequireBelow(double value_m, double limit_m, std::string_view what, const char* key);
 
 struct WallFeatureKind {

@@ -49,6 +49,7 @@ BulletWorld::BulletWorld(const Bore& bore, const TubeBall& ball, const BallStart
     : wall_(bore),
       spot_(start.spot),
       data_(ball),
+      impact_rad_s_(ball.compliance ? std::sqrt(ball.compliance->stiffness_N_m / ball.mass_kg) : 0),
       tumbling_(MakeTumbling(ball, start)),
       p_F_(wall_.X_FL(spot_) * start.X_LB.p),
       v_step_F_(wall_.X_FL(spot_).q * start.v_WB_W),
@@ -60,7 +61,7 @@ BulletWorld::BulletWorld(const Bore& bore, const TubeBall& ball, const BallStart
       body_(BodyInfo(ball, sphere_shape_)),
       solver_(ball.radius_m, ball.rolling_length_m, ball.spinning_length_m),
       world_(dispatcher_, broadphase_, solver_, configuration_, body_, bore_) {
-  world_.SetMaterial(ball.friction, ball.compliance);
+  world_.SetFriction(ball.friction);
   body_.setFlags(0);  // gyroscopic torque is ours
   const Quaterniond& q_FL = wall_.X_FL(spot_).q;
   const Vector3d v_WM_W = start.v_WB_W + start.w_WB_W.cross(q_LB_ * ball.p_BM_B);
@@ -89,7 +90,7 @@ void BulletWorld::Step(const BallLoad& load, double kick_s, double dt_s) {
   rescues_ += contacts.rescue ? 1 : 0;
   AddContacts(contacts, plan);
   world_.stepSimulation(dt_s);
-  ReadContacts(contacts);
+  ReadContacts();
   Drift(plan);
 }
 
@@ -131,43 +132,65 @@ void BulletWorld::KickTumbling(const BallLoad& load, double kick_s, StepPlan& pl
 
 void BulletWorld::AddContacts(const WallContacts& contacts, const StepPlan& plan) {
   world_.ClearContacts();
-  solver_.set_slip(ToBullet(-plan.turning_F));
-  closing_speeds_m_s_.fill(0);
+  solver_.set_slip(ToBullet(Vector3d(-plan.turning_F)));
   for (const WallContact& contact : contacts) {
     const Vector3d& n = contact.normal_F;
-    const double gap_m = AimAtGap(contact, plan) + n.dot(plan.turning_F) * plan.dt_s;
-    world_.AddContact({ToBullet(n), ToBullet(n * -data_.radius_m - plan.lever_F), gap_m});
+    const WallApproach approach = MakeApproach(contact, plan);
+    TubeWorld::Contact aim =
+        data_.compliance ? AimSoftly(contact, plan.dt_s) : AimRigidly(contact, approach, plan.dt_s);
+    if (aim.firmness == 0) continue;
+    aim.normal = ToBullet(n);
+    aim.lever = ToBullet(Vector3d(n * -data_.radius_m - plan.lever_F));
+    aim.distance += n.dot(plan.turning_F) * plan.dt_s;
+    const bool pressed = data_.compliance && CalcGapBefore_m(contact, plan.dt_s) <= 0;
+    aimed_[static_cast<std::size_t>(world_.contact_count())] = {
+        n, pressed ? 0 : CalcClosingSpeed_m_s(approach, plan.dt_s), contact.feature};
+    world_.AddContact(aim);
   }
 }
 
-/// What the contact closes over the step: the gap, and more where the ball rebounds.
-double BulletWorld::AimAtGap(const WallContact& contact, const StepPlan& plan) {
+WallApproach BulletWorld::MakeApproach(const WallContact& contact, const StepPlan& plan) {
   const double dt = plan.dt_s, a_n = contact.normal_F.dot(plan.acceleration_F);
-  const WallApproach approach{contact.present_gap_m, contact.normal_F.dot(plan.v_step_F) - 0.5 * dt * a_n,
-                              a_n + 2 * (contact.gap_m - contact.present_gap_m) / (dt * dt)};
-  double& closing_m_s = closing_speeds_m_s_[static_cast<std::size_t>(world_.contact_count())];
-  if (data_.compliance) {
-    if (contact.present_gap_m > 0) closing_m_s = CalcClosingSpeed_m_s(approach, dt);
-    return contact.gap_m;
-  }
-  closing_m_s = CalcClosingSpeed_m_s(approach, dt);
-  const double rebound_m = CalcReboundGap_m(approach, data_.restitution, dt);
-  return rebound_m > 0 ? contact.gap_m - rebound_m : std::max(contact.gap_m, -kMaxPush_m_s * dt);
+  return {contact.present_gap_m, contact.normal_F.dot(plan.v_step_F) - 0.5 * dt * a_n,
+          a_n + 2 * (contact.gap_m - contact.present_gap_m) / (dt * dt)};
 }
 
-void BulletWorld::ReadContacts(const WallContacts& contacts) {
+/// The gap, and more where the ball rebounds.
+TubeWorld::Contact BulletWorld::AimRigidly(const WallContact& contact, const WallApproach& approach,
+                                           double dt_s) const {
+  const double rebound_m = CalcReboundGap_m(approach, data_.restitution, dt_s);
+  return {.distance =
+              rebound_m > 0 ? contact.gap_m - rebound_m : std::max(contact.gap_m, -kMaxPush_m_s * dt_s)};
+}
+
+/// Speed of the gap over the step before: a wall that curves towards the path closes it by as much more than
+/// the normal velocity does as it will in the coming step.
+double BulletWorld::CalcGapSpeedBefore_m_s(const WallContact& contact, double dt_s) const {
+  return contact.normal_F.dot(v_step_F_) - (contact.gap_m - contact.present_gap_m) / dt_s;
+}
+
+double BulletWorld::CalcGapBefore_m(const WallContact& contact, double dt_s) const {
+  return contact.present_gap_m - dt_s * CalcGapSpeedBefore_m_s(contact, dt_s);
+}
+
+TubeWorld::Contact BulletWorld::AimSoftly(const WallContact& contact, double dt_s) const {
+  const SoftForce force = CalcSoftForce(
+      *data_.compliance, {contact.present_gap_m, CalcGapSpeedBefore_m_s(contact, dt_s), impact_rad_s_}, dt_s);
+  return {.distance = contact.gap_m - contact.present_gap_m - force.speed_m_s * dt_s,
+          .firmness = force.firmness_N_s_m};
+}
+
+void BulletWorld::ReadContacts() {
   const Quaterniond& q_LF = wall_.X_LF(spot_).q;
   normal_impulse_N_s_ = 0;
   contacts_ = {};
-  int i = 0;
-  for (const WallContact& contact : contacts) {
+  for (int i = 0; i < world_.contact_count(); ++i) {
     const double impulse_N_s = world_.NormalImpulse(i);
     normal_impulse_N_s_ += impulse_N_s;
-    if (impulse_N_s > 0) {
-      contacts_.Add({q_LF * contact.normal_F, q_LF * FromBullet(world_.Impulse(i)),
-                     closing_speeds_m_s_[static_cast<std::size_t>(i)], contact.feature});
-    }
-    ++i;
+    if (!(impulse_N_s > 0)) continue;
+    const AimedContact& aimed = aimed_[static_cast<std::size_t>(i)];
+    contacts_.Add({q_LF * aimed.normal_F, q_LF * FromBullet(world_.Impulse(i)), aimed.closing_speed_m_s,
+                   aimed.feature});
   }
 }
 

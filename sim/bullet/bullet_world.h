@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <optional>
 
+#include "sim/ball_world.h"
 #include "sim/bore_wall.h"
 #include "sim/bullet/tube_world.h"
+#include "sim/impact.h"
 #include "sim/tumbling.h"
 
 namespace piperun::sim::bullet {
@@ -55,16 +57,28 @@ class BulletWorld {
     Vector3d acceleration_F;  // of B
   };
 
+  /// What to tell of a contact that Bullet has been given.
+  struct AimedContact {
+    Vector3d normal_F;
+    double closing_speed_m_s = 0;
+    int feature = -1;
+  };
+
   StepPlan Kick(const BallLoad& load, double kick_s, double dt_s);
   void KickTumbling(const BallLoad& load, double kick_s, StepPlan& plan);
   void AddContacts(const WallContacts& contacts, const StepPlan& plan);
-  double AimAtGap(const WallContact& contact, const StepPlan& plan);
-  void ReadContacts(const WallContacts& contacts);
+  static WallApproach MakeApproach(const WallContact& contact, const StepPlan& plan);
+  TubeWorld::Contact AimRigidly(const WallContact& contact, const WallApproach& approach, double dt_s) const;
+  TubeWorld::Contact AimSoftly(const WallContact& contact, double dt_s) const;
+  double CalcGapSpeedBefore_m_s(const WallContact& contact, double dt_s) const;
+  double CalcGapBefore_m(const WallContact& contact, double dt_s) const;
+  void ReadContacts();
   void Drift(const StepPlan& plan);
 
   BoreWall wall_;
   NetworkSpot spot_;  // Bullet works in the frame of its piece
   TubeBall data_;
+  double impact_rad_s_;               // of a soft contact
   std::optional<Tumbling> tumbling_;  // of a ball whose attitude acts on its motion
 
   Vector3d p_F_;       // of B
@@ -73,7 +87,7 @@ class BulletWorld {
   Quaterniond q_LB_;
   Vector3d dtheta_B_rad_ = Vector3d::Zero();
   StepContacts contacts_;
-  std::array<double, WallContacts::kCapacity> closing_speeds_m_s_{};
+  std::array<AimedContact, WallContacts::kCapacity> aimed_;  // those that Bullet has been given
   double normal_impulse_N_s_ = 0;
   std::int64_t rescues_ = 0;
 

@@ -2,6 +2,8 @@
 
 #include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
 
+#include "sim/bullet/contact_resistance.h"
+
 namespace piperun::sim::bullet {
 
 /// Bullet's sequential impulses for one body in front of walls that do not move, with resistance to rolling
@@ -11,15 +13,7 @@ namespace piperun::sim::bullet {
 /// and joints, orders of rows, split impulses, profiling) has nothing to do here and is left out: same bits
 /// at a third of the cost.
 ///
-/// At a contact with normal impulse J the wall resists rolling by an angular impulse q across the normal and
-/// spinning by one along it,
-///
-///   |q| <= b J,      q opposite to the rolling velocity w_t = w - n (n . w), w_t = 0 while |q| < b J,
-///   |q_n| <= b_sp J, q_n opposite to n . w, n . w = 0 while |q_n| < b_sp J,
-///
-/// b = c_rr r and b_sp = c_sp r, lengths. Bullet's own rolling friction bounds q along two axes of its
-/// choice: up to sqrt(2) too much, and a slow sideways rocking would stop as if the ball were not rolling
-/// forward at all.
+/// Rolling and spinning at a contact: sim/bullet/contact_resistance.h.
 class ContactSolver : public btSequentialImpulseConstraintSolver {
  public:
   ContactSolver(btScalar radius, btScalar rolling_length, btScalar spinning_length)
@@ -34,27 +28,20 @@ class ContactSolver : public btSequentialImpulseConstraintSolver {
                       const btContactSolverInfo& info, btIDebugDraw* draw, btDispatcher* dispatcher) override;
 
  private:
-  /// Angular impulses that one contact has given.
-  struct Resistance {
-    btVector3 rolling;
-    btScalar spinning;
-  };
-
-  void SetUp(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds, int manifold_count,
+  void SetUp(btRigidBody& body, btPersistentManifold** manifolds, int manifold_count,
              const btContactSolverInfo& info);
   void AimAtSlip();
   btScalar Iterate();
-  btScalar Resist(const btSolverConstraint& contact, Resistance& given);
-  btScalar ResistRolling(const btSolverConstraint& contact, btVector3& impulse);
-  btScalar ResistSpinning(const btSolverConstraint& contact, btScalar& impulse);
-  btSolverBody& BodyOf(const btSolverConstraint& row) { return m_tmpSolverBodyPool[row.m_solverBodyIdA]; }
-  btSolverBody& WallOf(const btSolverConstraint& row) { return m_tmpSolverBodyPool[row.m_solverBodyIdB]; }
+  btScalar Resist(const btSolverConstraint& contact, ContactResistance& resistance);
+  void WriteBack(btRigidBody& body, const btContactSolverInfo& info);
+  btSolverBody& body() { return m_tmpSolverBodyPool[0]; }
+  btSolverBody& wall() { return m_tmpSolverBodyPool[1]; }
 
   btScalar radius_;
   btScalar rolling_length_;
   btScalar spinning_length_;
   btVector3 slip_{0, 0, 0};
-  btAlignedObjectArray<Resistance> resistances_;  // one per contact
+  btAlignedObjectArray<ContactResistance> resistances_;  // one per contact
 };
 
 }  // namespace piperun::sim::bullet

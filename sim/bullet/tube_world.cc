@@ -29,17 +29,15 @@ TubeWorld::~TubeWorld() {
   removeCollisionObject(&wall_);
 }
 
-void TubeWorld::SetMaterial(btScalar friction, const std::optional<ContactCompliance>& compliance) {
+void TubeWorld::SetFriction(btScalar friction) {
   manifold_.setNumContacts(kMaxContacts);
   for (int i = 0; i < kMaxContacts; ++i) {
     btManifoldPoint& point = manifold_.getContactPoint(i);
     point = btManifoldPoint();
     point.m_combinedFriction = friction;
     point.m_combinedRestitution = 0;  // rebounds are aimed at through the distance
-    if (!compliance) continue;
-    point.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
-    point.m_combinedContactStiffness1 = compliance->stiffness_N_m;
-    point.m_combinedContactDamping1 = compliance->damping_N_s_m;
+    point.m_contactPointFlags = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_HAS_CONTACT_ERP;
+    point.m_contactERP = 1;
   }
   ClearContacts();
 }
@@ -52,6 +50,7 @@ void TubeWorld::AddContact(const Contact& contact) {
   point.m_positionWorldOnA = body_.getCenterOfMassPosition() + contact.lever;
   point.m_positionWorldOnB = point.m_positionWorldOnA - contact.normal * contact.distance;
   point.m_distance1 = contact.distance;
+  point.m_contactCFM = contact.firmness == kRigid ? 0 : 1 / contact.firmness;
   point.m_appliedImpulse = point.m_appliedImpulseLateral1 = point.m_appliedImpulseLateral2 = 0;
 }
 

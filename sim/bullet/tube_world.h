@@ -2,9 +2,6 @@
 
 #include <btBulletDynamicsCommon.h>
 
-#include <optional>
-
-#include "sim/ball_world.h"
 #include "sim/bullet/contact_solver.h"
 
 namespace piperun::sim::bullet {
@@ -30,10 +27,12 @@ class TubeWorld : public btDiscreteDynamicsWorld {
  public:
   /// A contact of the body with the wall for the coming step.
   struct Contact {
-    btVector3 normal;   ///< unit, from the wall to the body
-    btVector3 lever;    ///< from the body's centre of mass to the contact
-    btScalar distance;  ///< what the contact closes over the step
+    btVector3 normal{0, 0, 0};   ///< unit, from the wall to the body
+    btVector3 lever{0, 0, 0};    ///< from the body's centre of mass to the contact
+    btScalar distance = 0;       ///< what the contact closes over the step
+    btScalar firmness = kRigid;  ///< force over the speed by which it falls short of that
   };
+  static constexpr btScalar kRigid = SIMD_INFINITY;
   static constexpr int kMaxContacts = MANIFOLD_CACHE_SIZE;
 
   /// Keeps references.
@@ -43,8 +42,8 @@ class TubeWorld : public btDiscreteDynamicsWorld {
   TubeWorld(const TubeWorld&) = delete;
   TubeWorld& operator=(const TubeWorld&) = delete;
 
-  /// Holds for all contacts to come. Rigid without `compliance`.
-  void SetMaterial(btScalar friction, const std::optional<ContactCompliance>& compliance);
+  /// Holds for all contacts to come.
+  void SetFriction(btScalar friction);
 
   void ClearContacts() { manifold_.setNumContacts(0); }
   /// At most kMaxContacts.

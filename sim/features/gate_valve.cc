@@ -1,7 +1,5 @@
 // A partly closed valve: a gate with a straight edge.
 
-#include <algorithm>
-
 #include "sim/wall_feature.h"
 
 namespace piperun::sim {
@@ -30,8 +28,10 @@ std::vector<WallFeature> Make(const Params& params, const WallFeatureSite& site)
   const auto& p = static_cast<const GateValveParams&>(params);
   const double half_m = 0.5 * p.thickness_m, radius_m = site.At().radius_m();
   RequireBelow(p.opening_m, 2 * radius_m, "the bore: such a valve is open", "opening_m");
-  RequireBelow(p.edge_radius_m, half_m * (1 + 1e-12), "half the thickness", "edge_radius_m");
-  const GateLeaf gate{p.opening_m - radius_m, half_m, std::min(p.edge_radius_m, half_m)};
+  if (p.edge_radius_m != half_m) {
+    RequireBelow(p.edge_radius_m, half_m, "half the thickness", "edge_radius_m");
+  }
+  const GateLeaf gate{p.opening_m - radius_m, half_m, p.edge_radius_m};
   std::vector<WallFeature> valves;
   for (const auto& [s_m, number] : p.places.Find(site, {half_m, half_m})) {
     valves.push_back({site.pipe, s_m, {{s_m, site.ClockDirection(s_m, p.clock_rad), gate}}});

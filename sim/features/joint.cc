@@ -36,9 +36,9 @@ struct JointParams : ParamsOf<JointParams> {
 
 void Check(const JointParams& p, const WallFeatureSite& site) {
   RequireBelow(p.gap.Largest_m() + 2 * p.edge_radius_m, 2 * site.ball_radius_m,
-               "the ball's diameter, rounded edges included", "gap_m");
+               "the ball's diameter (rounded edges and 3 sigma of the scatter counted)", "gap_m");
   RequireBelow(p.offset.Largest_m(), std::min(site.At().radius_m(), p.ramp_m),
-               "the bore's radius, and the ramp", "offset_m");
+               "the bore's radius and the ramp (3 sigma of the scatter counted)", "offset_m");
 }
 
 WallFeature MakeJoint(const JointParams& p, const WallFeatureSite& site, const FeaturePlaces::Place& place) {

@@ -60,7 +60,7 @@ WallFeature MakePatch(const ScaleParams& p, const WallFeatureSite& site, const F
 std::vector<WallFeature> Make(const Params& params, const WallFeatureSite& site) {
   const auto& p = static_cast<const ScaleParams&>(params);
   const double radius_m = site.At().radius_m(), most_m = p.height.Largest_m();
-  RequireBelow(most_m, radius_m, "the bore's radius", "height_m");
+  RequireBelow(most_m, radius_m, "the bore's radius (3 sigma of the scatter counted)", "height_m");
   const Boss largest = MakeBoss(radius_m, most_m, p.Width_m(most_m));
   const double half_m = 0.5 * p.length_m + largest.base_m;
   std::vector<WallFeature> patches;

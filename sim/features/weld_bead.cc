@@ -23,7 +23,7 @@ struct WeldBeadParams : ParamsOf<WeldBeadParams> {
 std::vector<WallFeature> Make(const Params& params, const WallFeatureSite& site) {
   const auto& p = static_cast<const WeldBeadParams&>(params);
   const double radius_m = site.At().radius_m(), most_m = p.height.Largest_m();
-  RequireBelow(most_m, radius_m, "the bore's radius", "height_m");
+  RequireBelow(most_m, radius_m, "the bore's radius (3 sigma of the scatter counted)", "height_m");
   const double aspect = p.width_m / p.height.mean_m, half_m = 0.5 * aspect * most_m;
   const RingBead largest = MakeRingBead(radius_m, most_m, aspect * most_m);
   std::vector<WallFeature> beads;

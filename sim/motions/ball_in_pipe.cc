@@ -6,12 +6,14 @@
 #include "base/check.h"
 #include "sim/ball_mass.h"
 #include "sim/ball_world.h"
+#include "sim/contact_events.h"
 #include "sim/downstream.h"
 #include "sim/fluid_load.h"
 #include "sim/force_params.h"
 #include "sim/launch.h"
 #include "sim/load_ranges.h"
 #include "sim/motion.h"
+#include "sim/step_resolution.h"
 #include "sim/stream_fluctuations.h"
 
 namespace piperun::sim {
@@ -22,24 +24,26 @@ constexpr double kTouching_m = 1e-6;  // far above rounding, far below anything 
 
 struct BallInPipeParams : ParamsOf<BallInPipeParams> {
   double rate_Hz = 1000;
+  double contact_event_speed_m_s = 0.01;
   ForceParams forces;
   StreamParams stream;
 
   void Visit(ParamVisitor& v) override {
-    v.Number({"rate_Hz", "Steps of the physics per second."}, Range::Between(100, 10000), rate_Hz);
+    v.Number({"rate_Hz", "Steps of the physics per second."}, Range::Between(100, kMaxStepRate_Hz), rate_Hz);
+    v.Number({"contact_event_speed_m_s",
+              "Closing speed above which a contact is a collision; what carries the ball comes on top."},
+             Range::Between(1e-4, 10), contact_event_speed_m_s);
     v.Struct({"forces", "Which laws act on the ball."}, forces);
     v.Struct({"stream", "The flow in a pipe beyond its bulk speed."}, stream);
   }
 };
 
-/// The share of the drag F that a step can resolve, from z = 2F dt/(M |slip|): how much of the slip it would
-/// take off, twice. The world's leapfrog with extrapolated velocities is stable for z < 1 (amplification
-/// matrix [1-z, -z/2; -z, -z/2]). A ball that nearly fills its bore, in fast water, goes beyond: drag is then
-/// held to z < 0.9. Up to z = 1/2 nothing is changed; a usual run has z = 1e-3.
-double CalcResolvedShare(double z) {
-  constexpr double kFree = 0.5, kMost = 0.9;
-  if (z <= kFree) return 1;
-  return (kFree + (kMost - kFree) * -std::expm1(-(z - kFree) / (kMost - kFree))) / z;
+/// Refuses a contact that is too short for the steps.
+StepResolution WatchSteps(const BallParams& ball, const FluidLoadCoefficients& c, Rate rate) {
+  if (!ball.contact_stiffness_N_m) return {rate, 0};
+  const double mass_kg = ball.mass_kg() + c.added_mass_kg;
+  RequireResolvedContact(*ball.contact_stiffness_N_m, mass_kg, rate);
+  return {rate, CalcContactPhase_rad(*ball.contact_stiffness_N_m, mass_kg, rate)};
 }
 
 /// Share of a sudden change of the water's velocity that the ball takes part in without drag (chi,
@@ -88,9 +92,11 @@ class BallInPipe : public Motion {
         ranges_(coefficients_, context.water, FindProfileLaw(params.stream.profile)),
         fluctuations_(params.stream, context.seed, context.run, rate_, 2 * context.ball.radius_m,
                       CalcResponse(context.ball, coefficients_), context.water.kinematic_viscosity_m2_s),
+        steps_(WatchSteps(context.ball, coefficients_, rate_)),
         world_(*context.bore, MakeTubeBall(ApplyForces(context.ball, params.forces), coefficients_), rate_,
                MakeLaunch(context, context.lateral_sd_m),
-               [this](const BallInstant& ball) { return EvalLoad(ball); }) {
+               [this](const BallInstant& ball) { return load_ = EvalLoad(ball); }),
+        contact_events_(context.ball.radius_m, InertialMass_kg(), params.contact_event_speed_m_s) {
     Publish();
     progress_m_ = state_.chainage_m;
   }
@@ -100,19 +106,17 @@ class BallInPipe : public Motion {
   MotionStatus status() const override { return status_; }
   Vector3d planned_start_W() const override { return MakeLaunch(context_, 0).X_LB.p; }
   const Way* way() const override { return &way_; }
+  std::span<const ContactEvent> contact_events() const override { return contact_events_.ended(); }
 
-  std::vector<std::string> notes() const override {
-    std::vector<std::string> notes = ranges_.Sentences();
-    if (held_back_ > 0) {
-      notes.push_back("drag was held back in " + std::to_string(held_back_) +
-                      " steps, too stiff for them (a ball that nearly fills its bore in fast water); raise "
-                      "motion.rate_Hz");
-    }
+  std::vector<std::string> warnings() const override {
+    std::vector<std::string> warnings = steps_.Warnings();
+    const std::vector<std::string> excursions = ranges_.Sentences();
+    warnings.insert(warnings.end(), excursions.begin(), excursions.end());
     if (const auto rescues = world_.state().rescues; rescues > 0) {
-      notes.push_back("the ball had to be pushed back into the bores in " + std::to_string(rescues) +
-                      " steps; pipes there overlap in a way that joints do not");
+      warnings.push_back("the ball had to be pushed back into the bores in " + std::to_string(rescues) +
+                         " steps; pipes there overlap in a way that joints do not");
     }
-    return notes;
+    return warnings;
   }
 
   void Step() override {
@@ -120,6 +124,9 @@ class BallInPipe : public Motion {
     world_.Step();
     if (world_.state().crossing) way_.Cross(*world_.state().crossing);
     Publish();
+    DetectContactEvents();
+    const BallState& ball = world_.state();
+    steps_.AddMotion(ball.w_WB_W.norm(), ball.v_WB_W.norm(), ball.spot.axis.curvature_W.norm());
     UpdateStatus();
   }
 
@@ -132,12 +139,9 @@ class BallInPipe : public Motion {
     FluidLoad load = CalcFluidLoad(coefficients_, ball.v_WB_W, ball.w_WB_W, water_);
     ranges_.Feed(load.numbers, water_);
     const double slip_m_s = (water_.velocity_W - ball.v_WB_W).norm();
-    const double inertia_kg = context_.ball.mass_kg() + coefficients_.added_mass_kg;
     if (slip_m_s > 0) {
-      const double share =
-          CalcResolvedShare(2 * load.drag_W_N.norm() * rate_.Period_s() / (inertia_kg * slip_m_s));
-      load.drag_W_N *= share;
-      if (share < 1) ++held_back_;
+      load.drag_W_N *=
+          steps_.HoldDrag(2 * load.drag_W_N.norm() * rate_.Period_s() / (InertialMass_kg() * slip_m_s));
     }
     return {load.Force_W_N(), load.spin_torque_W_N_m + CalcWeightTorque_W_N_m(ball.q_WB)};
   }
@@ -146,6 +150,17 @@ class BallInPipe : public Motion {
   Vector3d CalcWeightTorque_W_N_m(const Quaterniond& q_WB) const {
     const Vector3d p_BC_W = q_WB * context_.ball.center_of_mass_B_m;
     return p_BC_W.cross(context_.ball.mass_kg() * context_.gravity_W);
+  }
+
+  double InertialMass_kg() const { return context_.ball.mass_kg() + coefficients_.added_mass_kg; }
+
+  void DetectContactEvents() {
+    const BallState& ball = world_.state();
+    const double carried_N = CalcCarriedForce_N(load_.force_W_N.norm(), InertialMass_kg(), ball.spot.axis,
+                                                ball.X_LB.p, ball.v_WB_W);
+    contact_events_.Step(
+        {ball.time, rate_.Period_s(), carried_N, {state_.X_WB.p, state_.pipe, state_.s_m, state_.chainage_m}},
+        ball.contacts);
   }
 
   const Pipe& PipeOf(const NetworkSpot& spot) const { return context_.network->pipe(spot.pipe); }
@@ -233,8 +248,10 @@ class BallInPipe : public Motion {
   StreamFluctuations fluctuations_;
   WaterAtBall water_;  // where and when the world evaluated the loads last: at its present state
   bool too_large_ = false;
-  std::int64_t held_back_ = 0;  // steps whose drag was more than they can follow
+  BallLoad load_;  // what the world was given last
+  StepResolution steps_;
   BallWorld world_;
+  ContactEventDetector contact_events_;
   TruthState state_;
   MotionStatus status_ = MotionStatus::kRunning;
   double progress_m_ = 0;  // farthest chainage that counted as progress, and when it was reached

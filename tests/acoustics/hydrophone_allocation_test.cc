@@ -46,5 +46,15 @@ TEST(Hydrophone, RenderingDoesNotAllocate) {
   EXPECT_EQ(allocations - before, 0);
 }
 
+TEST(Hydrophone, RenderingKnocksDoesNotAllocate) {
+  Hydrophone hydrophone({}, MakeQuietScene(MakePvcWave()), RandomStream(1, "hydrophone0", 0));
+  for (int i = 0; i < 200; ++i) hydrophone.Add({TrueTime(std::chrono::milliseconds(7 * i)), 0.02, 0.02});
+  const Hydrophone::ListenerAt listener = StillAt(12);
+  std::vector<std::int32_t> block(1600);
+  const std::int64_t before = allocations;
+  for (int i = 0; i < 20; ++i) hydrophone.Render(listener, block);
+  EXPECT_EQ(allocations - before, 0);
+}
+
 }  // namespace
 }  // namespace piperun::acoustics

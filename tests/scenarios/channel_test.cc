@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -113,6 +115,68 @@ TEST(AcousticScene, APipeLaidAgainstTheWaySoundsAsOneLaidWithIt) {
   // the same noise at the same place: only rounding, at most to another code, tells the two apart
   EXPECT_GT(power, 1e4 * static_cast<double>(with.size()));
   EXPECT_LT(difference, static_cast<double>(with.size()));
+}
+
+sim::ContactEvent MakeBlow(int begin_ms, double impulse_N_s = 0.002, double peak_force_N = 2) {
+  sim::ContactEvent event;
+  event.begin = TrueTime(std::chrono::milliseconds(begin_ms));
+  event.impulse_W_N_s = {0, 0, impulse_N_s};
+  event.peak_force_N = peak_force_N;
+  return event;
+}
+
+TEST(ContactTime, IsTheHalfSinesForASoftBallAndTheGivenOneForARigidBall) {
+  EXPECT_NEAR(CalcContactTime_s(MakeBlow(0), true, 0.001), std::numbers::pi / 2 * 1e-3, 1e-15);
+  EXPECT_EQ(CalcContactTime_s(MakeBlow(0), false, 0.001), 0.001);
+}
+
+/// The first second of the small scenario's hydrophone.
+std::vector<std::int32_t> ListenFor(const Scenario& scenario, const std::vector<sim::ContactEvent>& blows) {
+  const auto assembly = Assemble(scenario);
+  Channel* hydrophone = nullptr;
+  for (const auto& channel : assembly->channels) {
+    if (dynamic_cast<HydrophoneChannel*>(channel.get())) hydrophone = channel.get();
+  }
+  sim::TruthWindow window(assembly->motion->rate(), 2000);
+  for (int i = 0; i < 1500; ++i) {
+    window.Push(assembly->motion->state());
+    assembly->motion->Step();
+  }
+  for (const sim::ContactEvent& blow : blows) hydrophone->Hear(blow);
+  std::vector<std::int32_t> counts;
+  for (int block = 0; block < 10; ++block) {
+    const auto& audio = std::get<AudioBlock>(hydrophone->Take(window).value);
+    counts.insert(counts.end(), audio.counts.begin(), audio.counts.end());
+  }
+  return counts;
+}
+
+TEST(HydrophoneChannel, HearsABlowWhenTheRobotsClockShowsItsTime) {
+  // 0.8 s of true time are 0.8008 s of a clock that runs 1000 ppm fast: sample 12812.8
+  const Scenario scenario =
+      MakeSmallScenario({"ball.clock_drift_ppm=1000", "ball.clock_offset_s=3", "leaks=[]"});
+  const auto without = ListenFor(scenario, {}), with = ListenFor(scenario, {MakeBlow(800)});
+  const auto first = std::mismatch(with.begin(), with.end(), without.begin()).first - with.begin();
+  EXPECT_EQ(first, 12813);
+  // 0.002 N s in 1 ms: a tenth of 1503 Pa, half a contact time later
+  std::int64_t loudest = 0;
+  for (std::size_t n = 0; n < with.size(); ++n) {
+    if (with[n] - without[n] >
+        with[static_cast<std::size_t>(loudest)] - without[static_cast<std::size_t>(loudest)])
+      loudest = static_cast<std::int64_t>(n);
+  }
+  EXPECT_NEAR(static_cast<double>(loudest), 12812.8 + 8.5, 1);
+  const acoustics::HydrophoneParams params;
+  const auto n = static_cast<std::size_t>(loudest);
+  EXPECT_NEAR((with[n] - without[n]) * params.scale_Pa(), 150.3, 4);  // the 10 Hz high-pass takes 3 %
+}
+
+TEST(HydrophoneChannel, WaitsUntilCollisionsAreTold) {
+  const auto assembly = Assemble(MakeSmallScenario());
+  for (const auto& channel : assembly->channels) {
+    const bool hears = dynamic_cast<HydrophoneChannel*>(channel.get()) != nullptr;
+    EXPECT_EQ(channel->contact_delay(), hears ? sim::kContactEventDelay : Duration(0));
+  }
 }
 
 }  // namespace

@@ -6,10 +6,12 @@
 #include <atomic>
 #include <cstddef>
 
+#include "sim/ball_world.h"
 #include "sim/bore.h"
 #include "sim/hydraulics.h"
 #include "sim/motion.h"
 #include "sim/network/simulation.h"
+#include "tests/support/features.h"
 #include "tests/support/networks.h"
 #include "tests/support/pipes.h"
 
@@ -48,6 +50,28 @@ TEST(BallInPipe, StepsWithoutAllocating) {
     while (motion->status() == MotionStatus::kRunning) motion->Step();
     EXPECT_EQ(allocations - before, 0);
   }
+}
+
+TEST(BallAtFeature, StepsOverEveryKindWithoutAllocating) {
+  testing::BoreNetwork line = testing::MakeBoreLine({{0, 0, 0}, {5, 0, 0}});
+  testing::AddFeatures(line.bore, "joint", {{"s_m", 1.0}, {"offset_m", 0.001}});
+  testing::AddFeatures(line.bore, "weld_bead", {{"s_m", 1.6}, {"height_m", 0.001}});
+  testing::AddFeatures(line.bore, "service_hole", {{"s_m", 2.0}, {"clock_rad", 3.1}});
+  testing::AddFeatures(line.bore, "gate_valve", {{"s_m", 2.5}, {"opening_m", 0.08}});
+  testing::AddFeatures(line.bore, "scale", {{"s_m", 3.3}, {"height_m", 0.001}, {"height_sd_m", 0.0}});
+  const Vector3d at(0.5, 0, -0.045);
+  BallWorld world(line.bore, {0.03, 0.18, 4.5e-5, 0.4, 3e-4}, Rate(1000),
+                  {{at, Quaterniond::Identity()},
+                   Vector3d::Zero(),
+                   Vector3d::Zero(),
+                   testing::FindSpot(line.network, 0, at)},
+                  [](const BallInstant& ball) {
+                    return BallLoad{Vector3d(0.5 - 0.5 * ball.v_WB_W.x(), 0, -0.11), Vector3d::Zero()};
+                  });
+  const long before = allocations;
+  while (world.state().X_LB.p.x() < 4 && Seconds(world.state().time) < 60) world.Step();
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_GE(world.state().X_LB.p.x(), 4);
 }
 
 TEST(HydraulicSolver, SolvesWithoutAllocating) {

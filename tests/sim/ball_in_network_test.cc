@@ -137,9 +137,9 @@ TEST(BallInNetwork, ABallThatNearlyFillsItsBoreStaysInItWhereTheWaterRaces) {
     EXPECT_EQ(motion->status(), MotionStatus::kDeadEnd) << radius_m;
     EXPECT_NEAR(motion->state().chainage_m, 3, 0.026) << radius_m;
     EXPECT_LT(motion->state().v_WB_W.norm(), 0.1) << radius_m;
-    const std::vector<std::string> notes = motion->notes();
-    EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
-      return note.find("raise motion.rate_Hz") != std::string::npos;
+    const std::vector<std::string> warnings = motion->warnings();
+    EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
+      return warning.find("raise motion.rate_Hz") != std::string::npos;
     })) << "that drag was held back is said";
   }
 }

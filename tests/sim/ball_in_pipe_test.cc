@@ -293,15 +293,15 @@ TEST(BallInPipe, SaysWhichLawsRangesItLeft) {
   const Bench in_range(MakePipeLine({{0, 0, 0}, {3, 0, 0}}, {.roughness_m = 1e-4}), 0.8);
   const auto ordinary = in_range.Launch();
   for (int i = 0; i < 500; ++i) ordinary->Step();
-  EXPECT_TRUE(ordinary->notes().empty()) << ordinary->notes().front();
+  EXPECT_TRUE(ordinary->warnings().empty()) << ordinary->warnings().front();
   const Bench fast(MakePipeLine({{0, 0, 0}, {3, 0, 0}}, {.roughness_m = 1e-4}), 5);
   const auto motion = fast.Launch();
   for (int i = 0; i < 500; ++i) motion->Step();
   // at rest in 5 m/s: Re = 1.035 5 0.06 / 1.14e-6 = 2.7e5, of the free ball at the same drag 3.4e5
-  ASSERT_FALSE(motion->notes().empty());
+  ASSERT_FALSE(motion->warnings().empty());
   EXPECT_EQ(
-      motion->notes().front().find("drag: Brown & Lawler is fitted for Re < 2e5; the ball reached Re 3."), 0u)
-      << motion->notes().front();
+      motion->warnings().front().find("drag: Brown & Lawler is fitted for Re < 2e5; the ball reached Re 3."), 0u)
+      << motion->warnings().front();
 }
 
 TEST(BallInPipe, SteadyRollBalancesForcesAndTorques) {

@@ -323,7 +323,10 @@ TEST(SecondaryFlow, ABallLikeWaterStaysOnItsStreamlineInAVortex) {
   BallParams ball;
   ball.radius_m = 0.01;
   ball.density_kg_m3 = kWater.density_kg_m3;
-  const FluidLoadCoefficients c = CalcFluidLoadCoefficients(ball, kWater, {0, 0, -9.81});
+  const ForceParams far_from_walls{.rolling_drag = false, .lift = false, .magnus = false};
+  const std::vector<double> bores{network.pipe(0).radius_m()};
+  const FluidLoadCoefficients c =
+      CalcFluidLoadCoefficients(ball, far_from_walls, kWater, {0, 0, -9.81}, bores);
   const Vortex vortex{6, 0.8};
   const auto load = [&](const BallInstant& at) -> BallLoad {
     const FluidLoad f = CalcFluidLoad(c, at.v_WB_W, at.w_WB_W, vortex.At(at.p_LB));
@@ -358,7 +361,10 @@ double FollowStreamline(const Vector3d& release, double duration_s) {
   BallParams ball;
   ball.radius_m = 0.005;
   ball.density_kg_m3 = 1000;
-  const FluidLoadCoefficients c = CalcFluidLoadCoefficients(ball, syrup, {0, 0, -9.81});
+  const ForceParams far_from_walls{.rolling_drag = false, .lift = false, .magnus = false};
+  const std::vector<double> bores{network.pipe(0).radius_m()};
+  const FluidLoadCoefficients c =
+      CalcFluidLoadCoefficients(ball, far_from_walls, syrup, {0, 0, -9.81}, bores);
   const auto load = [&](const BallInstant& at) -> BallLoad {
     const FluidLoad f = CalcFluidLoad(c, at.v_WB_W, at.w_WB_W, field.Eval(at.spot, at.p_LB, at.time));
     return {f.Force_W_N() - f.pressure_fall_W_N, f.spin_torque_W_N_m};

@@ -86,6 +86,7 @@ std::string DescribeResult(const RunResult& result) {
   if (result.route_length_m > 0) text += fmt::format(", route {:.2f} m", result.route_length_m);
   text += "\n" + DescribeWay(result);
   for (const std::string& note : result.notes) text += "Note: " + note + "\n";
+  for (const std::string& warning : result.warnings) text += "Warning: " + warning + "\n";
   for (const EstimatorResult& estimator : result.estimators) {
     text += fmt::format("\nLeaks by '{}': distance along the pipe from the launch\n", estimator.name);
     text += LeakRows(result, estimator);
