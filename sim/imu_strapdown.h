@@ -4,15 +4,17 @@
 
 namespace piperun::sim {
 
-/// The sensor's own coning and sculling algorithm: sums the increments of its internal samples to one step of
-/// v += R dv + g T; R = R Exp(dtheta), in the axes of the interval's begin.
+/// The sensor's own strapdown algorithm: sums its internal samples to one step of v += R dv + g T; R = R
+/// Exp(dtheta), in the axes of the interval's begin.
 ///
-/// Internal sample j with mean rate w_j and specific force f_j over dt, theta = w dt, nu = f dt:
-///   dtheta_j = theta_j + theta_{j-1} x theta_j / 12                                       (coning)
+/// Internal sample j, one per physics step, with rate w_j and mean specific force f_j over dt, theta = w dt,
+/// nu = f dt:
+///   R <- R Exp(theta_j)
 ///   dv_j = nu_j + theta_j x nu_j / 2 + theta_j x (theta_j x nu_j) / 6
 ///          + (theta_{j-1} x nu_j + nu_{j-1} x theta_j) / 12                                (sculling)
-/// P. Savage, "Strapdown inertial navigation integration algorithm design", J. Guid. Control Dyn. 21 (1998),
-/// parts 1 and 2. Error of a turn by |theta| per sample: of fourth order in |theta|.
+/// The truth turns at a constant rate within a step, so no coning is left between internal samples; the
+/// sculling term tells a force fixed in space from one fixed in the body. P. Savage, "Strapdown inertial
+/// navigation integration algorithm design", J. Guid. Control Dyn. 21 (1998), part 2.
 class StrapdownSum {
  public:
   /// Takes the next internal sample.
@@ -27,7 +29,6 @@ class StrapdownSum {
  private:
   Vector3d theta_ = Vector3d::Zero();
   Vector3d nu_ = Vector3d::Zero();
-  Vector3d coned_ = Vector3d::Zero();
   Vector3d sculled_ = Vector3d::Zero();
   bool started_ = false;
   Quaterniond q_begin_end_ = Quaterniond::Identity();
