@@ -28,6 +28,7 @@ struct ImuParams : ParamsOf<ImuParams> {
   void Visit(ParamVisitor& v) override;
   /// Throws InputError for what contradicts itself or the context.
   void Check(const SensorContext& context) const;
+  bool filtered() const { return gyro.filter.on() || accel.filter.on(); }
   bool point() const { return output == "point"; }
 };
 
