@@ -1,22 +1,24 @@
 #include "sim/imu_error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace piperun::sim {
 namespace {
 
-// Slots within a triad. Each term has its own, so that switching one on or off changes no other.
+// Slots within a triad. Each term has its own, or its own half of one, so that switching one on or off
+// changes no other.
 constexpr std::uint64_t kNoiseSlot = 0;
-constexpr std::uint64_t kWalkSlot = 1;
-constexpr std::uint64_t kPoleSlot = 2;  // six: 24 normals
+constexpr std::uint64_t kWalkSlot = 1;  // and b_GM
+constexpr std::uint64_t kPoleSlot = 2;  // four, of two poles each
 constexpr std::uint64_t kBiasSlot = 8;
 constexpr std::uint64_t kScaleSlot = 9;
-constexpr std::uint64_t kPoleStartSlot = 10;  // six
-static_assert(kPoleStartSlot + 3 * kFlickerPoles / 4 == kTriadSlots);
+constexpr std::uint64_t kPoleStartSlot = 10;  // four
+static_assert(kPoleStartSlot + kFlickerPoles / 2 <= kTriadSlots);
 
 // and beyond kMoreTriadSlots
-constexpr std::uint64_t kMarkovSlot = kMoreTriadSlots;  // of b_GM and s_i
+constexpr std::uint64_t kScaleDriftSlot = kMoreTriadSlots;
 constexpr std::uint64_t kRoundingSlot = kMoreTriadSlots + 1;
 constexpr std::uint64_t kStepNoiseSlot = kMoreTriadSlots + 2;
 constexpr std::uint64_t kStartSlot = kMoreTriadSlots + 3;  // of b_GM and s_i
@@ -24,35 +26,23 @@ constexpr std::uint64_t kRoundingStartSlot = kMoreTriadSlots + 4;
 constexpr std::uint64_t kMisalignmentSlot = kMoreTriadSlots + 5;
 
 constexpr double kFastestPole_s = 1e-2;
+constexpr double kUpdatesPerTime = 16;  // of a slow process
 
 Vector3d Normal3(const TriadStream& s, std::uint64_t sample, std::uint64_t slot) {
   const auto n = s.random.Normals(sample, s.first_slot + slot);
   return {n[0], n[1], n[2]};
 }
 
-/// Three normals per pole, four per slot.
-std::array<Vector3d, kFlickerPoles> PoleNormals(const TriadStream& s, std::uint64_t sample,
-                                                std::uint64_t slot) {
-  std::array<double, 3 * kFlickerPoles> flat;
-  for (std::size_t i = 0; i < flat.size(); i += 4) {
-    const auto n = s.random.Normals(sample, s.first_slot + slot + i / 4);
-    for (std::size_t j = 0; j < 4; ++j) flat[i + j] = n[j];
-  }
-  std::array<Vector3d, kFlickerPoles> poles;
-  for (std::size_t i = 0; i < kFlickerPoles; ++i) poles[i] = {flat[3 * i], flat[3 * i + 1], flat[3 * i + 2]};
-  return poles;
-}
-
-void StepPoles(TriadErrorState& state, std::uint64_t k, const TriadStream& stream,
-               const TriadErrorCoefficients& c) {
-  const auto normals = PoleNormals(stream, k, kPoleSlot);
-  for (std::size_t i = 0; i < kFlickerPoles; ++i) {
-    state.poles[i] = c.pole_decay[i] * state.poles[i] + c.pole_drive[i] * normals[i];
-  }
-}
-
 GaussMarkov MakeGaussMarkov(double sd, double correlation_s, double dt_s) {
   return {sd, std::exp(-dt_s / correlation_s), sd * std::sqrt(-std::expm1(-2 * dt_s / correlation_s))};
+}
+
+/// Updated every sample, or every T / 16 where that is longer.
+GaussMarkov MakeHeldGaussMarkov(double sd, double correlation_s, double dt_s) {
+  const double hold = std::max(1.0, std::floor(correlation_s / (kUpdatesPerTime * dt_s)));
+  GaussMarkov process = MakeGaussMarkov(sd, correlation_s, hold * dt_s);
+  process.hold = static_cast<std::int64_t>(hold);
+  return process;
 }
 
 Vector3d First(const std::array<double, 6>& n) { return {n[0], n[1], n[2]}; }
@@ -90,7 +80,7 @@ Vector3d CalcCurvature(const Vector3d& x, const Vector3d& f, const TriadCurvatur
 
 void MakeDrift(const TriadErrorParams& p, double dt_s, TriadErrorCoefficients& c) {
   c.markov = MakeGaussMarkov(p.gauss_markov_sd, p.gauss_markov_time_s, dt_s);
-  c.scale_drift = MakeGaussMarkov(p.scale_instability, p.scale_instability_time_s, dt_s);
+  c.scale_drift = MakeHeldGaussMarkov(p.scale_instability, p.scale_instability_time_s, dt_s);
   c.bias_per_K = p.temperature_bias;
   c.scale_per_K = p.temperature_scale;
   c.ramp = dt_s * p.rate_ramp;
@@ -99,11 +89,37 @@ void MakeDrift(const TriadErrorParams& p, double dt_s, TriadErrorCoefficients& c
   c.has_scale_drift = !c.scale_per_K.isZero(0) || c.scale_drift.sd > 0;
 }
 
-void StepMarkov(TriadErrorState& state, std::uint64_t k, const TriadStream& stream,
-                const TriadErrorCoefficients& c) {
-  const auto n = SixNormals(stream, k, kMarkovSlot);
-  state.markov = c.markov.decay * state.markov + c.markov.drive * First(n);
-  state.scale_markov = c.scale_drift.decay * state.scale_markov + c.scale_drift.drive * Second(n);
+Vector3d Next(const GaussMarkov& process, const Vector3d& x, const Vector3d& normals) {
+  return process.decay * x + process.drive * normals;
+}
+
+/// The poles whose time has come, two from each block of normals.
+void StepPoles(TriadErrorState& state, std::int64_t k, const TriadStream& stream,
+               const TriadErrorCoefficients& c) {
+  for (std::size_t i = 0; i < kFlickerPoles; i += 2) {
+    if (k < state.pole_due[i] && k < state.pole_due[i + 1]) continue;
+    const auto n = SixNormals(stream, static_cast<std::uint64_t>(k), kPoleSlot + i / 2);
+    for (const std::size_t j : {i, i + 1}) {
+      if (k < state.pole_due[j]) continue;
+      state.poles[j] = Next(c.poles[j], state.poles[j], j == i ? First(n) : Second(n));
+      state.pole_due[j] += c.poles[j].hold;
+    }
+  }
+}
+
+void StepWalkAndMarkov(TriadErrorState& state, std::uint64_t k, const TriadStream& stream,
+                       const TriadErrorCoefficients& c) {
+  const auto n = SixNormals(stream, k, kWalkSlot);
+  state.walk += c.walk_sd * First(n);
+  state.markov = Next(c.markov, state.markov, Second(n));
+}
+
+void StepScaleMarkov(TriadErrorState& state, std::int64_t k, const TriadStream& stream,
+                     const TriadErrorCoefficients& c) {
+  if (k < state.scale_due) return;
+  const auto n = SixNormals(stream, static_cast<std::uint64_t>(k), kScaleDriftSlot);
+  state.scale_markov = Next(c.scale_drift, state.scale_markov, First(n));
+  state.scale_due += c.scale_drift.hold;
 }
 
 }  // namespace
@@ -119,9 +135,9 @@ TriadErrorCoefficients MakeCoefficients(const TriadErrorParams& p, Rate rate, co
   c.noise_sd = p.noise / std::sqrt(dt);
   c.pole_sd = p.bias_instability * std::sqrt(std::numbers::ln10 / std::numbers::pi);
   double correlation_s = kFastestPole_s;
-  for (std::size_t i = 0; i < kFlickerPoles; ++i, correlation_s *= 10) {
-    c.pole_decay[i] = std::exp(-dt / correlation_s);
-    c.pole_drive[i] = c.pole_sd * std::sqrt(-std::expm1(-2 * dt / correlation_s));
+  for (GaussMarkov& pole : c.poles) {
+    pole = MakeHeldGaussMarkov(c.pole_sd, correlation_s, dt);
+    correlation_s *= 10;
   }
   c.walk_sd = p.rate_random_walk * std::sqrt(dt);
   if (p.range) c.output.range = *p.range;
@@ -135,8 +151,13 @@ TriadErrorCoefficients MakeCoefficients(const TriadErrorParams& p, Rate rate, co
 
 TriadErrorState MakeState(const TriadErrorCoefficients& c, const TriadStream& stream) {
   TriadErrorState state;
-  state.poles = PoleNormals(stream, 0, kPoleStartSlot);
-  for (Vector3d& pole : state.poles) pole *= c.pole_sd;
+  for (std::size_t i = 0; i < kFlickerPoles; i += 2) {
+    const auto n = SixNormals(stream, 0, kPoleStartSlot + i / 2);
+    state.poles[i] = c.pole_sd * First(n);
+    state.poles[i + 1] = c.pole_sd * Second(n);
+  }
+  for (std::size_t i = 0; i < kFlickerPoles; ++i) state.pole_due[i] = c.poles[i].hold;
+  state.scale_due = c.scale_drift.hold;
   const auto n = SixNormals(stream, 0, kStartSlot);
   state.markov = c.markov.sd * First(n);
   state.scale_markov = c.scale_drift.sd * Second(n);
@@ -156,10 +177,11 @@ Vector3d CalcBias(const TriadErrorState& state, const TriadErrorCoefficients& c)
 
 void StepDrift(TriadErrorState& state, std::int64_t k, const TriadStream& stream,
                const TriadErrorCoefficients& c, double warming_K) {
-  const auto sample = static_cast<std::uint64_t>(k);
-  if (k > 0 && c.walk_sd > 0) state.walk += c.walk_sd * Normal3(stream, sample, kWalkSlot);
-  if (k > 0 && c.pole_sd > 0) StepPoles(state, sample, stream, c);
-  if (k > 0 && (c.markov.sd > 0 || c.scale_drift.sd > 0)) StepMarkov(state, sample, stream, c);
+  if (k > 0 && (c.walk_sd > 0 || c.markov.sd > 0)) {
+    StepWalkAndMarkov(state, static_cast<std::uint64_t>(k), stream, c);
+  }
+  if (k > 0 && c.pole_sd > 0) StepPoles(state, k, stream, c);
+  if (k > 0 && c.scale_drift.sd > 0) StepScaleMarkov(state, k, stream, c);
   if (c.has_deterministic_drift) {
     state.deterministic_drift = warming_K * c.bias_per_K + static_cast<double>(k) * c.ramp;
   }

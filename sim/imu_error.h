@@ -24,9 +24,10 @@ inline constexpr std::uint64_t kMoreTriadSlots = 32;
 
 /// Stationary first-order Gauss-Markov process x <- exp(-dt/T) x + sigma sqrt(1 - exp(-2 dt/T)) w.
 struct GaussMarkov {
-  double sd = 0;     ///< sigma
-  double decay = 1;  ///< exp(-dt / T)
-  double drive = 0;  ///< sigma sqrt(1 - exp(-2 dt / T))
+  double sd = 0;          ///< sigma
+  double decay = 1;       ///< exp(-dt / T)
+  double drive = 0;       ///< sigma sqrt(1 - exp(-2 dt / T))
+  std::int64_t hold = 1;  ///< dt is so many samples: the process stays as it is in between
 };
 
 /// What is not linear in the true input, term by term as in TriadErrorParams.
@@ -43,14 +44,14 @@ struct TriadCurvature {
 /// Bias instability is a sum of eight stationary first-order Gauss-Markov processes with correlation times
 /// T_i = 1e-2, 1e-1 .. 1e5 s, each of variance sigma^2 = B^2 ln(10) / pi. Their Allan deviation is flat at
 /// sqrt(2 ln 2 / pi) B = 0.664 B within 1.5 % from 0.2 s to 20,000 s; a pole faster than the sampling
-/// interval acts as white noise.
+/// interval acts as white noise, a slow one moves in steps of T_i / 16, which its Allan variance does not
+/// tell from moving with every sample (below 0.1 %).
 struct TriadErrorCoefficients {
   Matrix3d sensitivity;                            ///< I + diag(s) + M
   Vector3d bias;                                   ///< b0, u
   double noise_sd = 0;                             ///< u
   double pole_sd = 0;                              ///< sigma, u
-  std::array<double, kFlickerPoles> pole_decay{};  ///< exp(-dt / T_i)
-  std::array<double, kFlickerPoles> pole_drive{};  ///< sigma sqrt(1 - exp(-2 dt / T_i)), u
+  std::array<GaussMarkov, kFlickerPoles> poles{};  ///< u
   double walk_sd = 0;                              ///< K sqrt(dt), u
   OutputRegister output;
 
@@ -70,6 +71,8 @@ struct TriadErrorCoefficients {
 /// What drifts. A value: copy it to save, assign it to restore.
 struct TriadErrorState {
   std::array<Vector3d, kFlickerPoles> poles;
+  std::array<std::int64_t, kFlickerPoles> pole_due{};  ///< sample at which each moves next
+  std::int64_t scale_due = 0;
   Vector3d walk = Vector3d::Zero();
   Vector3d markov = Vector3d::Zero();               ///< b_GM
   Vector3d scale_markov = Vector3d::Zero();         ///< s_i

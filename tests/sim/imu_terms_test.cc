@@ -70,8 +70,8 @@ TEST(ImuTerms, FlickerModelIsFlatWithinTwoPercentFrom200MillisecondsTo20000Secon
   const auto c = MakeCoefficients(p, Rate(100), {RandomStream(1, "a", 0), 0});
   EXPECT_NEAR(c.pole_sd * c.pole_sd, 4 * sigma2, 1e-12);
   double T = 1e-2;
-  for (const double decay : c.pole_decay) {
-    EXPECT_NEAR(decay, std::exp(-0.01 / T), 1e-12);
+  for (const GaussMarkov& pole : c.poles) {
+    EXPECT_NEAR(std::log(pole.decay), -0.01 * static_cast<double>(pole.hold) / T, 1e-12);
     T *= 10;
   }
 }
