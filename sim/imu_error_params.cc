@@ -7,6 +7,7 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kAxes{"none", "x", "y", "z"};
 const Range kSmall = Range::Between(-0.5, 0.5);
+const Range kTime_s{.min = 0, .max = 1e9, .min_open = true};
 
 }  // namespace
 
@@ -66,8 +67,7 @@ void TriadErrorParams::VisitScale(ParamVisitor& v, const TriadFieldNames& names)
            kSmall, scale_asymmetry);
   v.Number({"scale_instability", "Scale-factor instability: standard deviation of a Gauss-Markov process."},
            Range::Between(0, 0.1), scale_instability);
-  v.Number({"scale_instability_time_s", "Its correlation time."}, Range::Positive(),
-           scale_instability_time_s);
+  v.Number({"scale_instability_time_s", "Its correlation time."}, kTime_s, scale_instability_time_s);
   v.Matrix({"misalignment", "M, row by row: M_ij is the part of true axis j that axis i reads too much."},
            kSmall, misalignment);
   v.Number({"misalignment_sd", "Standard deviation of each off-diagonal element, drawn once per run."},
@@ -97,8 +97,7 @@ void TriadErrorParams::VisitDrift(ParamVisitor& v, const TriadFieldNames& names)
            Range::NonNegative(), bias_instability);
   v.Number({names.gauss_markov_sd, "Gauss-Markov bias: standard deviation sigma of each axis."},
            Range::NonNegative(), gauss_markov_sd);
-  v.Number({"gauss_markov_time_s", "Gauss-Markov bias: correlation time T."}, Range::Positive(),
-           gauss_markov_time_s);
+  v.Number({"gauss_markov_time_s", "Gauss-Markov bias: correlation time T."}, kTime_s, gauss_markov_time_s);
   v.Number({names.rate_random_walk, "Random walk K of the bias."}, Range::NonNegative(), rate_random_walk);
   v.Vector({names.rate_ramp, "Ramp R: the bias grows by R t since release."}, Range::Any(), rate_ramp);
 }

@@ -29,6 +29,7 @@ class Imu final : public Sensor {
         plan_(p.sampling, Rate(p.rate_Hz), context.random),
         X_BS_{p.lever_arm_m, ExpSO3(p.mounting_rad)},
         R_SB_(MakeTrueMounting(p, context.random).conjugate().toRotationMatrix()),
+        point_(p.point()),
         has_size_effect_(!p.accel_positions_m.isZero(0)),
         context_(context),
         gyro_(TriadType::kGyroscope, p.gyro, plan_.rate(), context.truth_rate, {context.random, 0}),
@@ -50,7 +51,7 @@ class Imu final : public Sensor {
     sample.stamp = context_.clock.ToRobot(DueTime(k));
     if (gyro_.needs_steps() || accel_.needs_steps()) {
       MeasureSteps(window, interval, sample);
-    } else if (params_.point()) {
+    } else if (point_) {
       MeasureInstant(window, interval.end, sample);
     } else {
       MeasureMeans(window, interval, sample);
@@ -145,7 +146,7 @@ class Imu final : public Sensor {
     strapdown_.Begin();
     const auto visit = [&](const TruthState& a, const TruthState& b, double from, double to, std::int64_t n) {
       const double part = to - from;
-      if (params_.point() && to < 1) return;
+      if (point_ && to < 1) return;
       if (n > step_.n) StepFrontEnds(a, b, n, saturated);
       steps += part;
       w += part * step_.w;
@@ -153,9 +154,8 @@ class Imu final : public Sensor {
       if (params_.increments) strapdown_.Add(part);
     };
     ForEachStep(window, interval.begin, interval.end, visit);
-    const bool point = params_.point();
-    sample.w_WS_S_rad_s = gyro_.ReadFormed(point ? step_.w : Vector3d(w / steps), saturated.gyro);
-    sample.f_WS_S_m_s2 = accel_.ReadFormed(point ? step_.f : Vector3d(f / steps), saturated.accel);
+    sample.w_WS_S_rad_s = gyro_.ReadFormed(point_ ? step_.w : Vector3d(w / steps), saturated.gyro);
+    sample.f_WS_S_m_s2 = accel_.ReadFormed(point_ ? step_.f : Vector3d(f / steps), saturated.accel);
     if (params_.increments) {
       sample.increments = FormIncrements(steps * context_.truth_rate.Period_s(), sample, saturated);
     }
@@ -202,6 +202,7 @@ class Imu final : public Sensor {
   SamplingPlan plan_;
   Pose X_BS_;  ///< as the crew knows it
   Matrix3d R_SB_;
+  bool point_;
   bool has_size_effect_;
   SensorContext context_;
   ImuTriad gyro_;

@@ -154,8 +154,8 @@ TEST(ImuTurn, TheSensorsOwnVelocityIncrementsAreThoseOfTheTruth) {
     const Vector3d dv = a.X_WB.q.conjugate() * (velocity(b) - velocity(a) - 0.01 * testing::kGravity_W);
     worst = std::max(worst, (std::get<ImuSample>(value).increments->dv_S_m_s - dv).norm());
   });
-  // 0.8 rad per m/s^2.. of the lever's force of w^2 |l| = 5.5 m/s^2 in 10 ms: a step turns by 0.03 rad, and
-  // means over a step leave out (0.03)^2 / 24 of what is fixed in space
+  // means over a step, which turns by 0.03 rad, leave out (0.03)^2 / 24 of a force fixed in space or in the
+  // body: here gravity and w^2 |l| = 5.6 m/s^2
   EXPECT_LT(worst, 0.01 * (5.6 + 9.81) * 0.03 * 0.03 / 24);
 }
 
