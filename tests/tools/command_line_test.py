@@ -125,10 +125,27 @@ class CommandLine(unittest.TestCase):
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
 
     def test_every_command_has_help(self):
-        for command in ([], ["run"], ["check"], ["estimate"], ["scenario"], ["scenario", "new"], ["network"]):
+        for command in ([], ["run"], ["check"], ["estimate"], ["scenario"], ["scenario", "new"], ["network"],
+                        ["simulate-static"]):
             done = piperun(*command, "--help")
             self.assertEqual(done.returncode, 0)
             self.assertIn("Usage", done.stdout)
+
+    def test_simulate_static_records_hours(self):
+        board = self.folder / "board.yaml"
+        board.write_text("sensors: {imu0: {kind: imu, rate_Hz: 200, gyro: {noise_deg_s_sqrtHz: 0.01}}}\n")
+        done = piperun("simulate-static", board, "--duration", "0.1 h", "--rate", 100, "--out", self.out, "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(done.stdout), {"imu0": {"samples": 36000, "lost": 0}})
+        self.assertEqual(len((self.out / "mav0/imu0/data.csv").read_text().splitlines()), 36001)
+        self.assertEqual(json.loads((self.out / "run.json").read_text())["duration_s"], 360)
+
+    def test_simulate_static_refuses_what_is_no_duration(self):
+        for duration in ("h", "-1s", "2 weeks", "0", "400d"):
+            done = piperun("simulate-static", self.scenario(), "--duration=" + duration, "--out", self.out)
+            self.assertEqual(done.returncode, 2, duration)
+            self.assertIn("--duration", done.stderr)
+            self.assertFalse(self.out.exists())
 
     def test_scenario_commands(self):
         self.assertIn("quickstart", piperun("scenario", "list").stdout)

@@ -23,5 +23,6 @@ void AddEstimateCommand(CLI::App& app, Display& display, int& exit_code);
 void AddNetworkCommand(CLI::App& app, Display& display, int& exit_code);
 void AddReproduceCommand(CLI::App& app, Display& display, int& exit_code);
 void AddScenarioCommand(CLI::App& app, Display& display, int& exit_code);
+void AddSimulateStaticCommand(CLI::App& app, Display& display, int& exit_code);
 
 }  // namespace piperun::tools

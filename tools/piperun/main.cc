@@ -45,6 +45,7 @@ int RunApp(int argc, char** argv) {
   AddNetworkCommand(app, display, exit_code);
   AddReproduceCommand(app, display, exit_code);
   AddScenarioCommand(app, display, exit_code);
+  AddSimulateStaticCommand(app, display, exit_code);
   app.footer("Exit codes: 0 ok, 1 the run or a check failed, 2 wrong usage or input, 130 interrupted.");
   try {
     app.parse(argc, argv);
