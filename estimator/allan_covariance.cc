@@ -10,7 +10,8 @@ namespace piperun::estimator {
 namespace {
 
 constexpr std::int64_t kTailClusters = 50;
-constexpr std::int64_t kLagByLag = 8;
+constexpr std::int64_t kLagByLag = 24;
+constexpr std::int64_t kGrowth = 4;
 // Gauss-Legendre, eight points (Abramowitz & Stegun, table 25.4).
 constexpr std::array<double, 4> kNode{0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
                                       0.9602898564975363};
@@ -75,10 +76,10 @@ class LagSum {
     return half * sum;
   }
 
-  /// Over first .. last, between kinks: panels that grow by two away from either end.
+  /// Over first .. last, between kinks: panels that grow away from either end.
   double AddInterval(std::int64_t first, std::int64_t last) const {
     double sum = 0;
-    for (std::int64_t size = std::max(kLagByLag, std::min(m1_, m2_) / 2); first <= last; size *= 2) {
+    for (std::int64_t size = std::max(kLagByLag, std::min(m1_, m2_) / 2); first <= last; size *= kGrowth) {
       const std::int64_t left = std::min(first + size - 1, last);
       sum += AddPanel(first, left);
       first = left + 1;
