@@ -36,7 +36,8 @@ double LogHistogram::Median() const {
 }
 
 RestCheck::RestCheck(double period_s)
-    : period_s_(period_s), block_(std::max(kShortestBlock, static_cast<std::int64_t>(std::llround(kBlock_s / period_s)))) {}
+    : period_s_(period_s),
+      block_(std::max(kShortestBlock, static_cast<std::int64_t>(std::llround(kBlock_s / period_s)))) {}
 
 void RestCheck::Append(std::span<const double> values) {
   for (const double value : values) {

@@ -1,5 +1,6 @@
 #include "scenarios/static_record.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -277,6 +278,27 @@ std::filesystem::path FindRecordFile(const std::filesystem::path& path) {
                    path.string());
 }
 
+/// A group's columns or unit, given twice, would hide one of them.
+template <class Value>
+void RefuseTwice(const std::vector<std::pair<std::string, Value>>& given, const char* option) {
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (given[i].first == given[j].first)
+        throw InputError("'" + given[i].first + "' is given twice", option);
+    }
+  }
+}
+
+void RefuseUnitsOfNothing(const StaticRecord& record, const RecordOptions& options) {
+  for (const auto& [name, unit] : options.units) {
+    const auto& groups = record.groups();
+    if (std::any_of(groups.begin(), groups.end(),
+                    [&, &name = name](const RecordGroup& g) { return g.name == name; }))
+      continue;
+    throw InputError("the record has no '" + name + "' to be in " + unit, "--unit");
+  }
+}
+
 }  // namespace
 
 std::unique_ptr<StaticRecord> OpenStaticRecord(const std::filesystem::path& path,
@@ -284,10 +306,18 @@ std::unique_ptr<StaticRecord> OpenStaticRecord(const std::filesystem::path& path
   if (options.rate_Hz && !(*options.rate_Hz > 0 && *options.rate_Hz <= 1e9)) {
     throw InputError(FormatNumber(*options.rate_Hz) + " is out of range; allowed: (0, 1e9]", "--rate");
   }
+  RefuseTwice(options.columns, "--columns");
+  RefuseTwice(options.units, "--unit");
   const std::filesystem::path file = FindRecordFile(path);
   const std::string extension = file.extension().string();
-  if (extension == ".wav" || extension == ".flac") return std::make_unique<AudioRecord>(file, options);
-  return std::make_unique<CsvRecord>(file, options);
+  std::unique_ptr<StaticRecord> record;
+  if (extension == ".wav" || extension == ".flac") {
+    record = std::make_unique<AudioRecord>(file, options);
+  } else {
+    record = std::make_unique<CsvRecord>(file, options);
+  }
+  RefuseUnitsOfNothing(*record, options);
+  return record;
 }
 
 }  // namespace piperun::scenarios

@@ -276,7 +276,7 @@ class CommandLine(unittest.TestCase):
 
     # ---- noise of a sensor at rest
 
-    def allan(self, *arguments, rows=20000, change=None):
+    def allan(self, *arguments, rows=20000, change=None, unit="deg/s"):
         """A gyroscope of 0.1 deg/s white noise at 100 Hz, N = 0.01 deg/s/sqrt(Hz); `change(k, value)` on top."""
         noise = random.Random(3)
         lines = ["t,w"]
@@ -285,7 +285,7 @@ class CommandLine(unittest.TestCase):
             lines.append(f"{k / 100:.2f},{change(k, value) if change else value}")
         path = self.folder / "rest.csv"
         path.write_text("\n".join(lines) + "\n")
-        return piperun("allan", path, "--columns", "gyro=w", "--unit", "gyro=deg/s", *arguments)
+        return piperun("allan", path, "--columns", "gyro=w", "--unit", "gyro=" + unit, *arguments)
 
     def test_allan_finds_the_noise_that_was_put_in(self):
         files = [self.folder / name for name in ("a.json", "imu.yaml", "a.svg")]
@@ -309,7 +309,12 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("1 rows with an empty, nan or infinite value", done.stdout)
         self.assertIn("rest.csv:101", done.stdout)
-        for arguments, rows, parts in [(("--unit", "gyro=dge"), 2000, ["'dge'", "did you mean 'deg'?"]),
+        for unit, part in [("dge", "'dge' is not a known unit"), ("g", "rad/s")]:
+            done = self.allan(rows=2000, unit=unit)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(part, done.stderr)
+        for arguments, rows, parts in [(("--unit", "gyro=rad/s"), 2000, ["--unit", "given twice"]),
+                                       (("--unit", "accel=g"), 2000, ["--unit", "no 'accel'"]),
                                        (("--time-column", "x"), 2000, ["--time-column", "'x'"]),
                                        (("--kalibr", self.folder / "k"), 2000, ["--kalibr", "accel"]),
                                        (("--rate", "-1"), 2000, ["--rate"]), ((), 10, ["10 samples"])]:
