@@ -39,6 +39,8 @@ int RunApp(int argc, char** argv) {
   app.add_flag("-q,--quiet", display.quiet, "Print errors only");
   app.add_flag("--json", display.json, "Print results as JSON");
   int exit_code = kOk;
+  AddAllanCommand(app, display, exit_code);
+  AddConvertUnitsCommand(app, display, exit_code);
   AddRunCommand(app, display, exit_code);
   AddCheckCommand(app, display, exit_code);
   AddEstimateCommand(app, display, exit_code);
