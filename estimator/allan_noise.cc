@@ -3,12 +3,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/flicker.h"
+
 namespace piperun::estimator {
 namespace {
 
-constexpr int kPoles = 8;
-constexpr double kFastestPole_s = 1e-2;
-constexpr double kPoleVariance = std::numbers::ln10 / std::numbers::pi;  // of B = 1
 constexpr double kSeriesBelow = 0.01;
 constexpr double kForgotten = 40;  // exp(-40) is less than half an ulp of 1
 
@@ -22,14 +21,13 @@ double CalcMarkovAllanVariance(double a, double m) {
 /// Calls `use` with dt / T of every pole.
 template <class Use>
 void ForEachPole(double period_s, const Use& use) {
-  double time_s = kFastestPole_s;
-  for (int i = 0; i < kPoles; ++i, time_s *= 10) use(period_s / time_s);
+  for (const double time_s : kFlickerTimes_s) use(period_s / time_s);
 }
 
 double CalcFlickerVariance(const NoiseShape& shape, double m) {
   if (shape.flicker == FlickerForm::kIdeal) return 2 * std::numbers::ln2 / std::numbers::pi;
   double sum = 0;
-  ForEachPole(shape.period_s, [&](double a) { sum += kPoleVariance * CalcMarkovAllanVariance(a, m); });
+  ForEachPole(shape.period_s, [&](double a) { sum += kFlickerVariance * CalcMarkovAllanVariance(a, m); });
   return sum;
 }
 
@@ -89,7 +87,7 @@ DifferenceCovariance::DifferenceCovariance(const NoiseModel& model, std::int64_t
   const bool ideal = model.shape.flicker == FlickerForm::kIdeal;
   ideal_flicker_ = ideal ? flicker / (2 * std::numbers::pi) : 0;
   if (!ideal && flicker > 0)
-    ForEachPole(dt, [&](double a) { markov_.push_back({SumVariance(a), flicker * kPoleVariance}); });
+    ForEachPole(dt, [&](double a) { markov_.push_back({SumVariance(a), flicker * kFlickerVariance}); });
   if (markov > 0) markov_.push_back({SumVariance(dt / model.shape.gauss_markov_time_s), markov});
 }
 

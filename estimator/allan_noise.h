@@ -21,8 +21,7 @@ inline constexpr std::size_t Index(NoiseTerm term) { return static_cast<std::siz
 
 /// What stands for flicker noise of coefficient B.
 enum class FlickerForm {
-  /// Eight stationary Gauss-Markov processes, correlation times 1e-2, 1e-1 .. 1e5 s, each of variance
-  /// B^2 ln(10) / pi: what the simulator's sensors generate.
+  /// The eight Gauss-Markov processes of base/flicker.h: what the simulator's sensors generate.
   kPoles,
   /// Density B^2 / (2 pi f) at every frequency: flat at (2 ln 2 / pi) B^2 for ever.
   kIdeal,

@@ -70,7 +70,7 @@ std::size_t FindColumn(const std::string& name, const std::vector<HeaderField>& 
                    option, where);
 }
 
-const std::string* FindUnit(const RecordOptions& options, const std::string& group) {
+const std::string* FindUnit(const StaticRecordOptions& options, const std::string& group) {
   for (const auto& [name, unit] : options.units) {
     if (name == group) return &unit;
   }
@@ -85,7 +85,7 @@ void AddColumn(RecordLayout& layout, const std::string& group, std::size_t field
   layout.columns.push_back({field, factor});
 }
 
-void AddNamedColumns(RecordLayout& layout, const RecordOptions& options,
+void AddNamedColumns(RecordLayout& layout, const StaticRecordOptions& options,
                      const std::vector<HeaderField>& header, const std::string& where) {
   for (const auto& [group, names] : options.columns) {
     const std::string* unit = FindUnit(options, group);
@@ -114,7 +114,7 @@ std::string GroupOfUnit(const std::string& unit) {
   return "";
 }
 
-void AddColumnsByUnit(RecordLayout& layout, const RecordOptions& options,
+void AddColumnsByUnit(RecordLayout& layout, const StaticRecordOptions& options,
                       const std::vector<HeaderField>& header) {
   for (std::size_t i = 0; i < header.size(); ++i) {
     if (layout.time_field == i || header[i].unit.empty()) continue;
@@ -132,8 +132,8 @@ double TimeUnit_ns(const std::string& unit, const std::string& where) {
   throw InputError("'" + unit + "' is no unit of time stamps; allowed: s ms us ns", "--time-unit", where);
 }
 
-void FindTime(RecordLayout& layout, const RecordOptions& options, const std::vector<HeaderField>& header,
-              const std::string& where) {
+void FindTime(RecordLayout& layout, const StaticRecordOptions& options,
+              const std::vector<HeaderField>& header, const std::string& where) {
   if (!options.time_column.empty()) {
     layout.time_field = FindColumn(options.time_column, header, "--time-column", where);
   } else if (!header.empty() &&
@@ -162,7 +162,7 @@ std::pair<double, std::string> ResolveGroupUnit(const std::string& group, const 
   return {parsed.factor, si};
 }
 
-RecordLayout ReadRecordLayout(std::string_view first_line, const RecordOptions& options,
+RecordLayout ReadRecordLayout(std::string_view first_line, const StaticRecordOptions& options,
                               const std::string& where) {
   const auto fields = SplitFields(first_line);
   RecordLayout layout;

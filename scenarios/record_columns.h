@@ -25,7 +25,7 @@ struct RecordLayout {
 
 /// Reads the layout off the first line of a file and the user's options. Throws InputError when a column is
 /// not there, a unit is missing or unknown, or there is neither time nor rate.
-RecordLayout ReadRecordLayout(std::string_view first_line, const RecordOptions& options,
+RecordLayout ReadRecordLayout(std::string_view first_line, const StaticRecordOptions& options,
                               const std::string& where);
 
 }  // namespace piperun::scenarios

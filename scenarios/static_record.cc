@@ -72,7 +72,7 @@ void Count(RecordTrouble& trouble, const std::string& where) {
 
 class CsvRecord final : public StaticRecord {
  public:
-  CsvRecord(const std::filesystem::path& path, const RecordOptions& options)
+  CsvRecord(const std::filesystem::path& path, const StaticRecordOptions& options)
       : path_(path), file_(path, std::ios::binary) {
     std::error_code ignored;
     size_ = static_cast<double>(std::filesystem::file_size(path, ignored));
@@ -237,7 +237,7 @@ class CsvRecord final : public StaticRecord {
 
 class AudioRecord final : public StaticRecord {
  public:
-  AudioRecord(const std::filesystem::path& path, const RecordOptions& options) : reader_(path) {
+  AudioRecord(const std::filesystem::path& path, const StaticRecordOptions& options) : reader_(path) {
     const bool named = !options.units.empty();
     const std::string group = named ? options.units[0].first : "audio";
     const auto [factor, si] = ResolveGroupUnit(group, named ? options.units[0].second : "1");
@@ -289,7 +289,7 @@ void RefuseTwice(const std::vector<std::pair<std::string, Value>>& given, const 
   }
 }
 
-void RefuseUnitsOfNothing(const StaticRecord& record, const RecordOptions& options) {
+void RefuseUnitsOfNothing(const StaticRecord& record, const StaticRecordOptions& options) {
   for (const auto& [name, unit] : options.units) {
     const auto& groups = record.groups();
     if (std::any_of(groups.begin(), groups.end(),
@@ -302,7 +302,7 @@ void RefuseUnitsOfNothing(const StaticRecord& record, const RecordOptions& optio
 }  // namespace
 
 std::unique_ptr<StaticRecord> OpenStaticRecord(const std::filesystem::path& path,
-                                               const RecordOptions& options) {
+                                               const StaticRecordOptions& options) {
   if (options.rate_Hz && !(*options.rate_Hz > 0 && *options.rate_Hz <= 1e9)) {
     throw InputError(FormatNumber(*options.rate_Hz) + " is out of range; allowed: (0, 1e9]", "--rate");
   }

@@ -41,7 +41,7 @@ struct RecordBlock {
   std::vector<std::vector<double>> channels;  ///< SI; groups one after the other; all equally long
 };
 
-struct RecordOptions {
+struct StaticRecordOptions {
   /// (group, columns by name or number from 1). Empty: by the units in the header, "name [unit]".
   std::vector<std::pair<std::string, std::vector<std::string>>> columns;
   std::vector<std::pair<std::string, std::string>> units;  ///< (group, unit)
@@ -67,6 +67,6 @@ class StaticRecord {
 /// A run folder (its mav0/imu0), a folder with a data.csv, a CSV file or a mono WAV or FLAC file. Throws
 /// InputError when it is none, or when columns, units or the rate are missing or unknown.
 std::unique_ptr<StaticRecord> OpenStaticRecord(const std::filesystem::path& path,
-                                               const RecordOptions& options);
+                                               const StaticRecordOptions& options);
 
 }  // namespace piperun::scenarios

@@ -25,7 +25,6 @@ constexpr std::uint64_t kStartSlot = kMoreTriadSlots + 3;  // of b_GM and s_i
 constexpr std::uint64_t kRoundingStartSlot = kMoreTriadSlots + 4;
 constexpr std::uint64_t kMisalignmentSlot = kMoreTriadSlots + 5;
 
-constexpr double kFastestPole_s = 1e-2;
 constexpr double kUpdatesPerTime = 16;  // of a slow process
 
 Vector3d Normal3(const TriadStream& s, std::uint64_t sample, std::uint64_t slot) {
@@ -133,11 +132,9 @@ TriadErrorCoefficients MakeCoefficients(const TriadErrorParams& p, Rate rate, co
   c.sensitivity.diagonal() += scale;
   c.bias = p.bias + p.bias_sd * Normal3(stream, 0, kBiasSlot);
   c.noise_sd = p.noise / std::sqrt(dt);
-  c.pole_sd = p.bias_instability * std::sqrt(std::numbers::ln10 / std::numbers::pi);
-  double correlation_s = kFastestPole_s;
-  for (GaussMarkov& pole : c.poles) {
-    pole = MakeHeldGaussMarkov(c.pole_sd, correlation_s, dt);
-    correlation_s *= 10;
+  c.pole_sd = p.bias_instability * std::sqrt(kFlickerVariance);
+  for (std::size_t i = 0; i < kFlickerPoles; ++i) {
+    c.poles[i] = MakeHeldGaussMarkov(c.pole_sd, kFlickerTimes_s[i], dt);
   }
   c.walk_sd = p.rate_random_walk * std::sqrt(dt);
   if (p.range) c.output.range = *p.range;

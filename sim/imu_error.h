@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "base/flicker.h"
 #include "base/pose.h"
 #include "base/random.h"
 #include "base/time.h"
@@ -11,7 +12,7 @@
 
 namespace piperun::sim {
 
-inline constexpr std::size_t kFlickerPoles = 8;
+inline constexpr std::size_t kFlickerPoles = kFlickerTimes_s.size();
 
 /// Slots of a channel's RandomStream that one triad uses: kTriadSlots from `first_slot`, and as many again
 /// from `first_slot` + kMoreTriadSlots.
@@ -41,9 +42,7 @@ struct TriadCurvature {
 
 /// What follows from the parameters, the sampling rate and the run's draws.
 ///
-/// Bias instability is a sum of eight stationary first-order Gauss-Markov processes with correlation times
-/// T_i = 1e-2, 1e-1 .. 1e5 s, each of variance sigma^2 = B^2 ln(10) / pi. Their Allan deviation is flat at
-/// sqrt(2 ln 2 / pi) B = 0.664 B within 1.5 % from 0.2 s to 20,000 s; a pole faster than the sampling
+/// Bias instability is the sum of Gauss-Markov processes of base/flicker.h. A pole faster than the sampling
 /// interval acts as white noise, a slow one moves in steps of T_i / 16, which its Allan variance does not
 /// tell from moving with every sample (below 0.1 %).
 struct TriadErrorCoefficients {

@@ -50,7 +50,7 @@ struct Whole {
   RecordTiming timing;
 };
 
-Whole ReadAll(const std::filesystem::path& file, const RecordOptions& options = {}) {
+Whole ReadAll(const std::filesystem::path& file, const StaticRecordOptions& options = {}) {
   const auto record = OpenStaticRecord(file, options);
   Whole whole;
   RecordBlock block;
@@ -65,7 +65,7 @@ Whole ReadAll(const std::filesystem::path& file, const RecordOptions& options = 
   return whole;
 }
 
-std::string Complaint(const std::filesystem::path& file, const RecordOptions& options = {}) {
+std::string Complaint(const std::filesystem::path& file, const StaticRecordOptions& options = {}) {
   try {
     ReadAll(file, options);
   } catch (const InputError& e) {
@@ -133,7 +133,7 @@ TEST_F(StaticRecordTest, JitterIsMeasured) {
 TEST_F(StaticRecordTest, PlainFilesNeedColumnsUnitsAndARate) {
   const auto file = File("1,2\n3,4\n5,6\n", "plain.csv");
   EXPECT_NE(Complaint(file).find("--columns"), std::string::npos);
-  RecordOptions options;
+  StaticRecordOptions options;
   options.columns = {{"accel", {"2"}}};
   EXPECT_NE(Complaint(file, options).find("--unit accel=UNIT"), std::string::npos);
   options.units = {{"accel", "deg/s"}};
@@ -154,7 +154,7 @@ TEST_F(StaticRecordTest, PlainFilesNeedColumnsUnitsAndARate) {
 }
 
 TEST_F(StaticRecordTest, SecondsAsStampsAreRead) {
-  RecordOptions options;
+  StaticRecordOptions options;
   options.columns = {{"gyro", {"w"}}};
   options.units = {{"gyro", "dps"}};
   const auto file = File("t,w\n0.0,1\n0.01,2\n0.02,3\n0.05,4\n", "seconds.csv");
@@ -168,7 +168,7 @@ TEST_F(StaticRecordTest, AudioIsARecord) {
   acoustics::AudioWriter writer(folder_ / "a.wav", {acoustics::AudioContainer::kWav, 8000, 16});
   writer.Write(counts);
   writer.Close();
-  RecordOptions options;
+  StaticRecordOptions options;
   options.units = {{"pressure", "Pa"}};
   options.full_scale = 64;
   const Whole whole = ReadAll(folder_ / "a.wav", options);

@@ -40,8 +40,8 @@ std::vector<std::string> SplitNames(const std::string& text) {
   return names;
 }
 
-scenarios::RecordOptions MakeRecordOptions(const AllanArguments& arguments) {
-  scenarios::RecordOptions options;
+scenarios::StaticRecordOptions MakeRecordOptions(const AllanArguments& arguments) {
+  scenarios::StaticRecordOptions options;
   for (const std::string& text : arguments.columns) {
     const auto [group, names] = SplitAssignment(text, "--columns");
     options.columns.emplace_back(group, SplitNames(names));
