@@ -82,39 +82,6 @@ std::string KalibrLine(const AllanAnalysis& analysis, const std::string& key, co
          "   # not identifiable from this record: this is the upper bound\n";
 }
 
-/// "key: value" of a triad, or a comment with the bound.
-std::string PresetLine(const AllanAnalysis& analysis, const std::string& key, const std::string& group,
-                       NoiseTerm term) {
-  const auto value = CombineAxes(analysis, group, term);
-  if (value) return "      " + key + ": " + FormatDigits(*value, 6) + "\n";
-  return "      # " + key + ": not identifiable from this record, below " +
-         FormatDigits(BoundAxes(analysis, group, term), 3) + "\n";
-}
-
-struct TriadKeys {
-  const char* group;
-  const char* noise;
-  const char* bias_instability;
-  const char* rate_random_walk;
-};
-constexpr TriadKeys kTriads[] = {
-    {"gyro", "noise_rad_s_sqrtHz", "bias_instability_rad_s", "rate_random_walk_rad_s2_sqrtHz"},
-    {"accel", "noise_m_s2_sqrtHz", "bias_instability_m_s2", "rate_random_walk_m_s3_sqrtHz"},
-};
-
-std::string PresetGroup(const AllanAnalysis& analysis, const TriadKeys& triad) {
-  const std::pair<const char*, NoiseTerm> lines[] = {{triad.noise, NoiseTerm::kWhite},
-                                                     {triad.bias_instability, NoiseTerm::kFlicker},
-                                                     {triad.rate_random_walk, NoiseTerm::kRateRandomWalk}};
-  std::string text;
-  bool any = false;
-  for (const auto& [key, term] : lines) {
-    any |= CombineAxes(analysis, triad.group, term).has_value();
-    text += PresetLine(analysis, key, triad.group, term);
-  }
-  return "    " + std::string(triad.group) + (any ? ":\n" : ": {}\n") + text;
-}
-
 }  // namespace
 
 std::string WriteAllanJson(const AllanAnalysis& analysis) {
@@ -151,22 +118,6 @@ std::string WriteKalibrYaml(const AllanAnalysis& analysis) {
          KalibrLine(analysis, "gyroscope_noise_density", "gyro", NoiseTerm::kWhite) +
          KalibrLine(analysis, "gyroscope_random_walk", "gyro", NoiseTerm::kRateRandomWalk) +
          "rostopic: /imu0\nupdate_rate: " + FormatDigits(1 / analysis.timing.period_s, 7) + "\n";
-}
-
-std::string WriteSensorPreset(const AllanAnalysis& analysis) {
-  std::string yaml =
-      "# Fitted by piperun allan: root mean square over the axes. Register rounding, range and scale are not "
-      "in a\n"
-      "# record at rest; add them from the data sheet.\nsensors:\n  imu0:\n    kind: imu\n    rate_Hz: " +
-      FormatDigits(1 / analysis.timing.period_s, 7) + "\n";
-  bool any = false;
-  for (const TriadKeys& triad : kTriads) {
-    if (!HasGroup(analysis, triad.group)) continue;
-    any = true;
-    yaml += PresetGroup(analysis, triad);
-  }
-  if (!any) throw InputError("a sensor of kind imu wants gyro or accel; the record has neither", "--preset");
-  return yaml;
 }
 
 }  // namespace piperun::scenarios

@@ -14,9 +14,10 @@ std::string WriteAllanJson(const AllanAnalysis& analysis);
 /// InputError when gyro or accel is missing or its white noise is not identifiable.
 std::string WriteKalibrYaml(const AllanAnalysis& analysis);
 
-/// A `sensors:` map with one sensor of kind imu that has the fitted noise, root mean square over the axes;
-/// terms that are not identifiable are left at zero, and a comment gives their bound. Throws InputError when
-/// there is neither gyro nor accel.
+/// A preset of sensors (scenarios/sensor_presets.h) whose section imu has the fitted noise: Q, N, B, K, R
+/// and, where it was asked for, the Gauss-Markov process, root mean square over the axes. Terms that are not
+/// identifiable are left out, and a comment gives their bound. Throws InputError when there is neither gyro
+/// nor accel.
 std::string WriteSensorPreset(const AllanAnalysis& analysis);
 
 /// Log-log plot of the deviations, one panel per group, with the confidence of every point as a band, the fit

@@ -13,7 +13,7 @@ constexpr double kBlock_s = 1;
 constexpr std::int64_t kShortestBlock = 16;
 constexpr double kMostShake = 3;
 constexpr double kMostJump = 12;
-constexpr double kFastestBias_rad_s = 0.35;
+constexpr double kFastestBias_rad_s = 0.52;
 
 std::string At(double time_s) { return FormatDigits(time_s, 6) + " s"; }
 

@@ -57,8 +57,8 @@ class RestCheck {
 /// Sentences about a channel that did not rest; empty when it did. A resting sensor's blocks of 100 samples
 /// are 3 times as rough as the median with a probability below 1e-100, whatever noise of IEEE Std 952, as
 /// differences of samples forget; changes of block means are Gaussian, 12 medians of them 8 standard
-/// deviations. A gyroscope that reads more than 0.35 rad/s (20 deg/s) turns: no data sheet allows such a
-/// bias.
+/// deviations. A gyroscope that reads more than 0.52 rad/s (30 deg/s) turns: data sheets allow biases of up
+/// to 25 deg/s (L3GD20H).
 std::vector<std::string> JudgeRest(const RestFindings& findings, const std::string& group);
 
 }  // namespace piperun::scenarios

@@ -9,8 +9,10 @@
 #include "scenarios/load.h"
 #include "scenarios/measurement_writer.h"
 #include "scenarios/output_file.h"
+#include "scenarios/rest_recording.h"
 #include "scenarios/run_folder.h"
 #include "scenarios/seal.h"
+#include "scenarios/sensor_presets.h"
 #include "sim/imu_params.h"
 
 namespace piperun::scenarios {
@@ -20,13 +22,36 @@ constexpr double kFilterRate_Hz = 1000;
 constexpr double kLeastTruthRate_Hz = 100;  // of scripted motions
 constexpr double kMostTruthRate_Hz = 10'000;
 
+/// What a source is, by its keys: a scenario has a schema, a preset a name, a file that holds only sensors
+/// neither.
+enum class SourceType { kScenario, kSensors, kPreset };
+
+SourceType FindSourceType(const std::string& source) {
+  const auto presets = SensorPresets();
+  const bool known = std::any_of(presets.begin(), presets.end(),
+                                 [&](const SensorPreset& preset) { return preset.name == source; });
+  if (known) return SourceType::kPreset;
+  if (!std::filesystem::is_regular_file(source)) return SourceType::kScenario;
+  std::string schema, name, description;
+  YamlDocument::FromFile(source).ReadSome([&](ParamVisitor& v) {
+    v.Text({"schema", ""}, schema);
+    v.Text({"name", ""}, name);
+    v.Text({"description", ""}, description);
+  });
+  if (!schema.empty()) return SourceType::kScenario;
+  return name.empty() && description.empty() ? SourceType::kSensors : SourceType::kPreset;
+}
+
 /// What makes a file that holds only sensors a scenario.
 std::vector<std::string> CompleteSensorFile(const std::string& source) {
-  if (!std::filesystem::is_regular_file(source)) return {};
-  std::string schema;
-  YamlDocument::FromFile(source).ReadSome([&](ParamVisitor& v) { v.Text({"schema", ""}, schema); });
-  if (!schema.empty()) return {};
   return {"schema=piperun.scenario/1", "name=" + std::filesystem::path(source).stem().string()};
+}
+
+Scenario LoadSource(const std::string& source, SourceType type, const std::vector<std::string>& overrides) {
+  if (type != SourceType::kPreset) return LoadScenario(source, overrides);
+  const SensorPreset preset = LoadSensorPreset(source, {});
+  const std::string name = preset.from_file ? std::filesystem::path(source).filename().string() : source;
+  return ParseScenario(WritePresetScenario(preset, name), source, overrides);
 }
 
 bool IsAudio(const SensorEntry& entry) { return entry.kind.records() == "audio"; }
@@ -76,35 +101,6 @@ void KeepSensorsOnly(Scenario& scenario) {
   scenario = std::move(rest);
 }
 
-/// One channel from the start to the end, fed with the truth of a body that stays as it is.
-class ChannelRecording {
- public:
-  ChannelRecording(Channel& channel, const sim::TruthState& rest, Rate truth_rate)
-      : channel_(channel),
-        state_(rest),
-        window_(truth_rate, static_cast<std::size_t>(std::ceil(
-                                Seconds(channel.history() + channel.lookahead()) * truth_rate.Hz())) +
-                                8) {}
-
-  /// The next measurement, if it is due by `end`; null when it was lost.
-  bool Next(TrueTime end, const Measurement*& measurement) {
-    const TrueTime due = channel_.due();
-    if (due > end) return false;
-    while (next_step_ == 0 || window_.latest_time() < due + channel_.lookahead()) {
-      state_.time = SampleTime(next_step_++, window_.rate());
-      window_.Push(state_);
-    }
-    measurement = channel_.Take(window_);
-    return true;
-  }
-
- private:
-  Channel& channel_;
-  sim::TruthState state_;
-  sim::TruthWindow window_;
-  std::int64_t next_step_ = 0;
-};
-
 /// Progress of one channel among all, now and then; ends the recording when the user asks to.
 class Reporter {
  public:
@@ -131,7 +127,7 @@ class Reporter {
 RestChannel RecordChannel(Channel& channel, const sim::TruthState& rest, Rate truth_rate, TrueTime end,
                           MeasurementWriter& writer, Reporter reporter) {
   RestChannel result;
-  ChannelRecording recording(channel, rest, truth_rate);
+  RestRecording recording(channel, rest, truth_rate);
   for (const Measurement* measurement = nullptr; recording.Next(end, measurement);) {
     ++(measurement ? result.samples : result.lost);
     if (measurement) writer.Write(*measurement);
@@ -144,12 +140,14 @@ RestChannel RecordChannel(Channel& channel, const sim::TruthState& rest, Rate tr
 }  // namespace
 
 Scenario LoadRestScenario(const std::string& source, const RestOptions& options) {
-  const std::vector<std::string> complete = CompleteSensorFile(source);
+  const SourceType type = FindSourceType(source);
+  std::vector<std::string> complete;
+  if (type == SourceType::kSensors) complete = CompleteSensorFile(source);
   const auto load = [&](const std::vector<std::string>& ours) {
     std::vector<std::string> overrides = complete;
     Append(ours, overrides);
     Append(options.overrides, overrides);
-    Scenario scenario = LoadScenario(source, overrides);
+    Scenario scenario = LoadSource(source, type, overrides);
     KeepSensorsOnly(scenario);
     return scenario;
   };

@@ -17,9 +17,10 @@ struct RestOptions {
 };
 
 /// The sensors of a scenario at rest: a scenario of motion `scripted`, script `rest`, without anything that
-/// is not about sensors (pipes, leaks, filters, hydrophones). `source` is a scenario by path or name, or a
-/// file that holds only `sensors:`. Its physics rate is the highest sampling rate, where nothing hangs on it,
-/// or 1 kHz where an IMU's filters run at it. Throws InputError.
+/// is not about sensors (pipes, leaks, filters, hydrophones). `source` is a scenario by path or name, a
+/// file that holds only `sensors:`, or a preset of sensors by name or file, at 25 degC. Its physics rate is
+/// the highest sampling rate, where nothing hangs on it, or 1 kHz where an IMU's filters run at it. Throws
+/// InputError.
 Scenario LoadRestScenario(const std::string& source, const RestOptions& options);
 
 struct RestChannel {

@@ -44,6 +44,13 @@ std::vector<SensorPreset> ReadLibrary() {
   return all;
 }
 
+/// A text as YAML, whatever it holds.
+std::string Quoted(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "''" : std::string(1, c);
+  return quoted + "'";
+}
+
 [[noreturn]] void RefuseUnknownPreset(const std::string& preset) {
   std::vector<std::string> known{"none"};
   for (const SensorPreset& board : SensorPresets()) known.push_back(board.name);
@@ -86,10 +93,12 @@ SensorPreset LoadSensorPreset(const std::string& preset, const std::filesystem::
 }
 
 std::string WritePresetScenario(const SensorPreset& loaded, const std::string& preset) {
-  std::string text = "schema: piperun.scenario/1\nname: \"" + loaded.name + "\"\nsensors:\n";
+  std::string text =
+      "schema: piperun.scenario/1\nname: " + Quoted(loaded.name) + "\nwater: {temperature_C: 25}\nsensors:\n";
   for (const KindEntry& section : loaded.sections) {
     const std::string channel = section.kind() == "magnetometer" ? "mag0" : section.kind() + "0";
-    text += "  " + channel + ": {kind: " + section.kind() + ", preset: \"" + preset + "\"}\n";
+    text += "  " + channel + ": {kind: " + section.kind() + ", preset: " + Quoted(preset) +
+            (section.kind() == "imu" ? ", thermal: {initial_C: 25}}\n" : "}\n");
   }
   return text;
 }

@@ -33,8 +33,8 @@ std::span<const SensorPreset> SensorPresets();
 /// name that is neither, and with file and line for what is wrong in a file.
 SensorPreset LoadSensorPreset(const std::string& preset, const std::filesystem::path& folder);
 
-/// A scenario of nothing but the preset's sensors, each under its usual name (imu0, mag0, pressure0).
-/// `preset` as for LoadSensorPreset().
+/// A scenario of nothing but the preset's sensors, each under its usual name (imu0, mag0, pressure0), on a
+/// bench at 25 degC, where data sheets are measured. `preset` as for LoadSensorPreset().
 std::string WritePresetScenario(const SensorPreset& loaded, const std::string& preset);
 
 }  // namespace piperun::scenarios

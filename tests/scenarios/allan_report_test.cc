@@ -7,10 +7,12 @@
 
 #include "base/check.h"
 #include "base/random.h"
-#include "scenarios/load.h"
+#include "scenarios/output_file.h"
 #include "scenarios/reproduction.h"
-#include "scenarios/yaml_document.h"
+#include "scenarios/sensor_presets.h"
 #include "sim/imu_error.h"
+#include "sim/imu_params.h"
+#include "tests/scenarios/small_scenario.h"
 
 namespace piperun::scenarios {
 namespace {
@@ -71,7 +73,7 @@ TEST(AllanReport, ARestingSensorIsSaidToRest) {
   EXPECT_FALSE(CombineAxes(analysis, "gyro", NoiseTerm::kRateRandomWalk));
 }
 
-TEST(AllanReport, MotionIsSaid) {
+TEST(AllanReport, MotionIsSaidSlow) {
   const AllanAnalysis knocked = Analyse(60000, [](std::int64_t k, Vector3d& gyro, Vector3d&) {
     if (k >= 30000 && k < 30100) gyro.x() += k % 2 ? 0.02 : -0.02;
   });
@@ -133,13 +135,54 @@ TEST(AllanReport, KalibrFileHasItsKeysAndSaysWhereItBounds) {
   EXPECT_NE(yaml.find("# not identifiable from this record: this is the upper bound"), std::string::npos);
 }
 
-TEST(AllanReport, PresetIsASensorOfAScenario) {
-  const std::string preset = WriteSensorPreset(Analyse(50000));
-  Scenario scenario = LoadScenario("closure");
-  const YamlDocument document(preset, "preset");
-  document.ReadSome([&](ParamVisitor& v) { v.NamedItems({"sensors", ""}, scenario.sensors); });
-  ASSERT_EQ(scenario.sensors.size(), 1U);
-  EXPECT_EQ(scenario.sensors[0].name, "imu0");
+/// Three gyroscope axes with every term found, but for the random walk; the values are those of axis 0, the
+/// others differ by 2 % up and down.
+AllanAnalysis FittedGyroscope() {
+  AllanAnalysis analysis;
+  analysis.timing.period_s = 0.005;
+  for (const double factor : {1.0, 1.02, 0.98}) {
+    AllanChannel channel{.group = "gyro", .axis = "x", .unit = "rad/s", .points{}, .segments{}, .fit{}};
+    const auto set = [&](NoiseTerm term, double value) {
+      channel.fit.terms[Index(term)] = {factor * value, {0.9 * value, 1.1 * value}, true};
+    };
+    set(NoiseTerm::kQuantisation, 1e-6);
+    set(NoiseTerm::kWhite, 2e-4);
+    set(NoiseTerm::kFlicker, 5e-5);
+    set(NoiseTerm::kRamp, 3e-9);
+    set(NoiseTerm::kGaussMarkov, 4e-5);
+    channel.fit.terms[Index(NoiseTerm::kRateRandomWalk)] = {0, {0, 7e-7}, false};
+    channel.fit.gauss_markov_time_s = {factor * 20, {15, 25}, true};
+    analysis.channels.push_back(channel);
+  }
+  return analysis;
+}
+
+TEST(AllanReport, APresetReadsBackWithEveryTerm) {
+  const TemporaryFolder folder;
+  WriteTextFile(folder / "mine.yaml", WriteSensorPreset(FittedGyroscope()));
+  const SensorPreset preset = LoadSensorPreset("mine.yaml", folder.path());
+  const auto& imu = dynamic_cast<const sim::ImuParams&>(preset.Find("imu")->params());
+  const double rms = std::sqrt((1 + 1.02 * 1.02 + 0.98 * 0.98) / 3);
+  constexpr double kDigits = 1e-5;  // relative: six digits are written
+  EXPECT_NEAR(imu.rate_Hz, 200, 1e-4);
+  EXPECT_NEAR(imu.gyro.quantisation / (rms * 1e-6), 1, kDigits);
+  EXPECT_NEAR(imu.gyro.noise / (rms * 2e-4), 1, kDigits);
+  EXPECT_NEAR(imu.gyro.bias_instability / (rms * 5e-5), 1, kDigits);
+  EXPECT_NEAR(imu.gyro.gauss_markov_sd / (rms * 4e-5), 1, kDigits);
+  EXPECT_NEAR(imu.gyro.gauss_markov_time_s / (20 * std::cbrt(1.02 * 0.98)), 1, kDigits);
+  for (const double ramp : imu.gyro.rate_ramp) EXPECT_NEAR(ramp / (rms * 3e-9), 1, kDigits);
+  EXPECT_EQ(imu.gyro.rate_random_walk, 0) << "not identifiable";
+  EXPECT_EQ(imu.accel.noise, 0) << "not in the record";
+  EXPECT_NE(ReadTextFile(folder / "mine.yaml")
+                .find("rate_random_walk_rad_s2_sqrtHz: not identifiable from "
+                      "this record, below 7e-07"),
+            std::string::npos);
+}
+
+TEST(AllanReport, APresetWithoutInertialSensorsIsRefused) {
+  AllanAnalysis analysis = FittedGyroscope();
+  for (AllanChannel& channel : analysis.channels) channel.group = "mag";
+  EXPECT_THROW(WriteSensorPreset(analysis), InputError);
 }
 
 TEST(AllanReport, PlotIsDrawnForBothGroups) {

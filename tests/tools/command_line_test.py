@@ -140,6 +140,15 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(len((self.out / "mav0/imu0/data.csv").read_text().splitlines()), 36001)
         self.assertEqual(json.loads((self.out / "run.json").read_text())["duration_s"], 360)
 
+    def test_simulate_static_takes_presets(self):
+        done = piperun("simulate-static", "bmi088", "--duration", "10s", "--out", self.out, "--json")
+        self.assertEqual(json.loads(done.stdout), {"imu0": {"samples": 2000, "lost": 0}}, done.stderr)
+        again = self.folder / "again"
+        done = piperun("simulate-static", self.out / "scenario.yaml", "--duration", "10s", "--out", again)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for name in ("scenario.yaml", "mav0/imu0/data.csv"):
+            self.assertEqual((self.out / name).read_bytes(), (again / name).read_bytes(), name)
+
     def test_simulate_static_refuses_what_is_no_duration(self):
         for duration in ("h", "-1s", "2 weeks", "0", "400d"):
             done = piperun("simulate-static", self.scenario(), "--duration=" + duration, "--out", self.out)
@@ -338,7 +347,8 @@ class CommandLine(unittest.TestCase):
         self.assertAlmostEqual(math.degrees(terms["N"]["value"]) / 0.01, 1, delta=0.04)
         self.assertIsNone(terms["K"]["value"])
         self.assertIn("not identifiable from this record", self.allan().stdout)
-        self.assertIn("kind: imu", files[1].read_text())
+        done = piperun("simulate-static", files[1], "--duration", "20s", "--out", self.out, "--json")
+        self.assertEqual(json.loads(done.stdout), {"imu0": {"samples": 2000, "lost": 0}}, done.stderr)
         self.assertIn("<svg", files[2].read_text())
         self.assertEqual(self.allan("--quiet").stdout, "")
 

@@ -135,7 +135,8 @@ void AddAllanCommand(CLI::App& app, Display& display, int& exit_code) {
   command->add_option("--jobs", a->jobs, "Threads for the fits (0: all cores)")->check(CLI::Range(0, 1024));
   command->add_option("--json-file", a->json, "Write everything as JSON (--json prints it)");
   command->add_option("--kalibr", a->kalibr, "Write Kalibr's imu.yaml");
-  command->add_option("--preset", a->preset, "Write a sensor for a scenario's `sensors:`");
+  command->add_option("--preset", a->preset,
+                      "Write a preset of sensors (`sensors: {imu0: {kind: imu, preset: FILE}}`)");
   command->add_option("--svg", a->svg, "Draw the deviations with their fit");
   command->footer(kFooter);
   command->callback([a, &display, &exit_code] { exit_code = Allan(*a, display); });

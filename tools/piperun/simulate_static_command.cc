@@ -91,8 +91,10 @@ void AddSimulateStaticCommand(CLI::App& app, Display& display, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("simulate-static", "Record the sensors of a scenario at rest, for hours");
   command
-      ->add_option("SOURCE", arguments->source,
-                   "Scenario file or name, or a file that holds only `sensors:`, e.g. of `piperun allan`")
+      ->add_option(
+          "SOURCE", arguments->source,
+          "Scenario file or name, a preset of sensors by name or file (as of `piperun allan --preset`), or "
+          "a file that holds only `sensors:`")
       ->required();
   command->add_option("--duration", arguments->duration, "How long: number with s, min, h or d, e.g. 2.5h")
       ->required();
