@@ -141,7 +141,9 @@ AllanAnalysis FittedGyroscope() {
   AllanAnalysis analysis;
   analysis.timing.period_s = 0.005;
   for (const double factor : {1.0, 1.02, 0.98}) {
-    AllanChannel channel{.group = "gyro", .axis = "x", .unit = "rad/s", .points{}, .segments{}, .fit{}};
+    AllanChannel channel;
+    channel.group = "gyro";
+    channel.unit = "rad/s";
     const auto set = [&](NoiseTerm term, double value) {
       channel.fit.terms[Index(term)] = {factor * value, {0.9 * value, 1.1 * value}, true};
     };
