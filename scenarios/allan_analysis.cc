@@ -17,6 +17,7 @@ using estimator::NoiseTerm;
 
 constexpr std::int64_t kFewestSamples = 100;
 constexpr double kWorstMisfit = 5;
+constexpr double kShortClusters = 10;  // samples
 
 /// What is gathered of one channel while the record streams by.
 struct Gatherer {
@@ -83,15 +84,18 @@ void AddTimingNotes(const RecordTiming& timing, std::vector<std::string>& notes)
   }
 }
 
-void AddChannelNotes(const AllanChannel& channel, std::vector<std::string>& notes) {
+void AddChannelNotes(const AllanChannel& channel, double period_s, std::vector<std::string>& notes) {
   for (const std::string& unrest : channel.unrest) {
     notes.push_back(channel.group + " " + channel.axis + " was not at rest: " + unrest);
   }
   if (channel.fit.worst_misfit > kWorstMisfit) {
-    notes.push_back(channel.group + " " + channel.axis +
-                    ": the terms do not describe this record; at tau = " +
-                    FormatDigits(channel.fit.worst_misfit_tau_s, 3) + " s it lies " +
-                    FormatDigits(channel.fit.worst_misfit, 3) + " standard deviations off the fit");
+    notes.push_back(
+        channel.group + " " + channel.axis + ": the terms do not describe this record; at tau = " +
+        FormatDigits(channel.fit.worst_misfit_tau_s, 3) + " s it lies " +
+        FormatDigits(channel.fit.worst_misfit, 3) + " standard deviations off the fit" +
+        (channel.fit.worst_misfit_tau_s < kShortClusters * period_s
+             ? "; a low-pass does that to the shortest clusters, --shortest-cluster leaves them out"
+             : ""));
   }
 }
 
@@ -139,7 +143,8 @@ AllanAnalysis AnalyseStaticRecord(StaticRecord& record, const std::string& file,
       },
       [](double) {});
   AddTimingNotes(analysis.timing, analysis.notes);
-  for (const AllanChannel& channel : channels) AddChannelNotes(channel, analysis.notes);
+  for (const AllanChannel& channel : channels)
+    AddChannelNotes(channel, analysis.timing.period_s, analysis.notes);
   AddGravityNote(channels, analysis.notes);
   return analysis;
 }

@@ -40,7 +40,8 @@ class YamlDocument {
   /// their id ("leaks.L1.s_m"). The value is YAML. Throws InputError for a malformed assignment.
   void Set(const std::string& assignment);
 
-  /// Fills the structs that `visit` walks.
+  /// Fills the structs that `visit` walks. One that itself refuses a value it read throws InputError with the
+  /// value's key; the key's path and its place in the file are added here.
   void Read(const VisitFunction& visit, SourceMap* sources = nullptr) const;
   /// The same, but other keys may stand beside those that `visit` asks for.
   void ReadSome(const VisitFunction& visit) const;

@@ -149,6 +149,11 @@ class CommandLine(unittest.TestCase):
         for name in ("scenario.yaml", "mav0/imu0/data.csv"):
             self.assertEqual((self.out / name).read_bytes(), (again / name).read_bytes(), name)
 
+    def test_reproduce_draws_only_what_can_be_drawn(self):
+        done = piperun("reproduce", "allan", "--out", self.out)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--out: the study 'allan' draws nothing", done.stderr)
+
     def test_simulate_static_refuses_what_is_no_duration(self):
         for duration in ("h", "-1s", "2 weeks", "0", "400d"):
             done = piperun("simulate-static", self.scenario(), "--duration=" + duration, "--out", self.out)
