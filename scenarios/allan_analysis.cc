@@ -17,7 +17,7 @@ using estimator::NoiseTerm;
 
 constexpr std::int64_t kFewestSamples = 100;
 constexpr double kWorstMisfit = 5;
-constexpr double kShortClusters = 10;  // samples
+constexpr std::int64_t kMostLeftOut = 128;  // samples
 
 /// What is gathered of one channel while the record streams by.
 struct Gatherer {
@@ -55,6 +55,7 @@ std::vector<AllanChannel> MakeChannels(const StaticRecord& record, const std::ve
                           g.allan.Points(),
                           g.allan.Segments(),
                           {},
+                          1,
                           findings.mean,
                           JudgeRest(findings, group.name)});
     }
@@ -88,14 +89,16 @@ void AddChannelNotes(const AllanChannel& channel, double period_s, std::vector<s
   for (const std::string& unrest : channel.unrest) {
     notes.push_back(channel.group + " " + channel.axis + " was not at rest: " + unrest);
   }
+  if (channel.shortest_cluster > 1) {
+    notes.push_back(channel.group + " " + channel.axis + ": the fit leaves out clusters below " +
+                    std::to_string(channel.shortest_cluster) + " samples (" +
+                    FormatDigits(static_cast<double>(channel.shortest_cluster) * period_s, 3) + " s)");
+  }
   if (channel.fit.worst_misfit > kWorstMisfit) {
-    notes.push_back(
-        channel.group + " " + channel.axis + ": the terms do not describe this record; at tau = " +
-        FormatDigits(channel.fit.worst_misfit_tau_s, 3) + " s it lies " +
-        FormatDigits(channel.fit.worst_misfit, 3) + " standard deviations off the fit" +
-        (channel.fit.worst_misfit_tau_s < kShortClusters * period_s
-             ? "; a low-pass does that to the shortest clusters, --shortest-cluster leaves them out"
-             : ""));
+    notes.push_back(channel.group + " " + channel.axis +
+                    ": the terms do not describe this record; at tau = " +
+                    FormatDigits(channel.fit.worst_misfit_tau_s, 3) + " s it lies " +
+                    FormatDigits(channel.fit.worst_misfit, 3) + " standard deviations off the fit");
   }
 }
 
@@ -110,6 +113,35 @@ void AddGravityNote(const std::vector<AllanChannel>& channels, std::vector<std::
     notes.push_back("the mean specific force is " + FormatDigits(std::sqrt(squares), 4) +
                     " m/s^2, not gravity's 9.8: a wrong unit, or a sensor that moved");
   }
+}
+
+bool Describes(const estimator::AllanFit& fit) { return fit.worst_misfit <= kWorstMisfit; }
+
+/// True when a record is smoother than its fit at the clusters that the next try leaves out.
+bool IsSmoothAt(const AllanChannel& channel, std::int64_t next_shortest) {
+  const double below_s = channel.fit.model.shape.period_s * static_cast<double>(next_shortest);
+  const auto point = std::find_if(channel.points.begin(), channel.points.end(), [&](const auto& p) {
+    return p.cluster.samples >= channel.shortest_cluster;
+  });
+  return point != channel.points.end() && channel.fit.worst_misfit_tau_s < below_s &&
+         point->variance < CalcAllanVariance(channel.fit.model, point->cluster.samples);
+}
+
+void FitChannel(double period_s, const AllanOptions& options, AllanChannel& channel) {
+  estimator::AllanFitOptions fit = options.fit;
+  const auto refit = [&](std::int64_t shortest_cluster) {
+    fit.shortest_cluster = shortest_cluster;
+    channel.shortest_cluster = shortest_cluster;
+    channel.fit = FitAllan(channel.points, channel.segments, period_s, fit);
+  };
+  refit(options.fit.shortest_cluster);
+  if (!options.leave_out_smooth || channel.points.back().cluster.samples <= kMostLeftOut) return;
+  const AllanChannel whole = channel;
+  while (!Describes(channel.fit) && 2 * channel.shortest_cluster <= kMostLeftOut &&
+         IsSmoothAt(channel, 2 * channel.shortest_cluster)) {
+    refit(2 * channel.shortest_cluster);
+  }
+  if (!Describes(channel.fit)) channel = whole;  // something else is wrong: say so of the whole record
 }
 
 }  // namespace
@@ -136,7 +168,7 @@ AllanAnalysis AnalyseStaticRecord(StaticRecord& record, const std::string& file,
       [&](int i) {
         AllanChannel& channel = channels[static_cast<std::size_t>(i)];
         try {
-          channel.fit = FitAllan(channel.points, channel.segments, analysis.timing.period_s, options.fit);
+          FitChannel(analysis.timing.period_s, options, channel);
         } catch (const InputError& e) {
           throw InputError(e.problem(), channel.group + " " + channel.axis, file);
         }

@@ -14,6 +14,9 @@ namespace piperun::scenarios {
 struct AllanOptions {
   estimator::AllanFitOptions fit;
   estimator::AllanGrid grid;
+  /// Leave the shortest clusters out of a channel's fit where the record is smooth there, as behind a
+  /// low-pass: no term describes that, and the fit would make flicker of it.
+  bool leave_out_smooth = false;
   int jobs = 0;  ///< threads for the fits; 0: all cores
   const std::atomic<bool>* stop = nullptr;
   std::function<void(double fraction)> progress;  ///< of the reading
@@ -25,6 +28,7 @@ struct AllanChannel {
   std::vector<estimator::AllanPoint> points;
   std::vector<estimator::SegmentGroup> segments;
   estimator::AllanFit fit;
+  std::int64_t shortest_cluster = 1;  ///< samples; shorter ones were left out of the fit
   double mean = 0;
   std::vector<std::string> unrest;  ///< what speaks against a sensor at rest
 };

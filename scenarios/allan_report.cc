@@ -93,6 +93,7 @@ std::string WriteAllanJson(const AllanAnalysis& analysis) {
                         {"mean", c.mean},
                         {"at_rest", c.unrest.empty()},
                         {"terms", TermsJson(c)},
+                        {"shortest_cluster_samples", c.shortest_cluster},
                         {"worst_misfit_sd", c.fit.worst_misfit},
                         {"points", PointsJson(c, analysis.timing.period_s, analysis.confidence)}});
   }

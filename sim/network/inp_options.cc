@@ -46,7 +46,8 @@ const auto& FindUnit(const InpLine& line, const Table& table) {
   std::string known;
   for (const auto& unit : table) {
     if (BeginsWith(line[1], unit.name)) return unit;
-    known += (known.empty() ? "" : ", ") + std::string(unit.name);
+    if (!known.empty()) known += ", ";
+    known += unit.name;
   }
   line.Fail("the unit '" + line[1] + "' is unknown; allowed: " + known);
 }

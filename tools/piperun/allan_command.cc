@@ -21,7 +21,7 @@ struct AllanArguments {
   double rate_Hz = 0, full_scale = 1, confidence = 0.95;
   std::string flicker = "poles";
   bool gauss_markov = false;
-  std::int64_t shortest_cluster = 1;
+  std::int64_t shortest_cluster = 0;  // not given
   int jobs = 0;
   std::string json, kalibr, preset, svg;
 };
@@ -61,7 +61,8 @@ scenarios::AllanAnalysis Analyse(const AllanArguments& arguments, const Display&
   options.fit.flicker =
       arguments.flicker == "ideal" ? estimator::FlickerForm::kIdeal : estimator::FlickerForm::kPoles;
   options.fit.terms[estimator::Index(estimator::NoiseTerm::kGaussMarkov)] = arguments.gauss_markov;
-  options.fit.shortest_cluster = arguments.shortest_cluster;
+  options.fit.shortest_cluster = std::max<std::int64_t>(1, arguments.shortest_cluster);
+  options.leave_out_smooth = arguments.shortest_cluster == 0;
   options.fit.confidence = arguments.confidence;
   options.jobs = arguments.jobs;
   options.stop = &stop_requested;
@@ -130,7 +131,7 @@ void AddAllanCommand(CLI::App& app, Display& display, int& exit_code) {
   command->add_flag("--gauss-markov", a->gauss_markov, "Fit a Gauss-Markov term, too");
   command
       ->add_option("--shortest-cluster", a->shortest_cluster,
-                   "Leave shorter clusters (samples) out of the fit")
+                   "Leave shorter clusters (samples) out of the fit (default: those that a low-pass smooths)")
       ->check(CLI::PositiveNumber);
   command->add_option("--jobs", a->jobs, "Threads for the fits (0: all cores)")->check(CLI::Range(0, 1024));
   command->add_option("--json-file", a->json, "Write everything as JSON (--json prints it)");
