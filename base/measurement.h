@@ -16,12 +16,23 @@ struct ImuIncrements {
   Vector3d dv_S_m_s = Vector3d::Zero();
 };
 
+/// What an inertial sensor's status register says of a sample.
+struct ImuFlags {
+  /// One bit per axis that met the end of its range since the last sample: gyroscope x, y, z, then
+  /// accelerometer x, y, z from the lowest bit.
+  std::uint8_t saturated = 0;
+  bool duplicated = false;  ///< the values are those of the last sample
+  bool any() const { return saturated != 0 || duplicated; }
+  friend bool operator==(const ImuFlags&, const ImuFlags&) = default;
+};
+
 /// Inertial sample, stamped at the end of its interval (t - 1/rate, t]; rates are means over the interval.
 struct ImuSample {
   RobotTime stamp{};
   Vector3d w_WS_S_rad_s = Vector3d::Zero();  ///< angular rate of S in W, in S
   Vector3d f_WS_S_m_s2 = Vector3d::Zero();   ///< specific force (acceleration minus gravity), in S
   std::optional<ImuIncrements> increments{};
+  ImuFlags flags{};
 };
 
 /// Magnetic flux density at an instant.

@@ -7,12 +7,22 @@
 
 namespace piperun {
 
-std::array<std::uint64_t, 4> Philox4x64(const std::array<std::uint64_t, 4>& counter,
-                                        const std::array<std::uint64_t, 2>& key) {
+namespace {
+
+/// Small enough to stay in registers where it is used.
+[[gnu::always_inline]] inline std::array<std::uint64_t, 4> Encrypt(
+    const std::array<std::uint64_t, 4>& counter, const std::array<std::uint64_t, 2>& key) {
   const r123::Philox4x64::ctr_type c{{counter[0], counter[1], counter[2], counter[3]}};
   const r123::Philox4x64::key_type k{{key[0], key[1]}};
   const auto r = r123::Philox4x64{}(c, k);
   return {r[0], r[1], r[2], r[3]};
+}
+
+}  // namespace
+
+std::array<std::uint64_t, 4> Philox4x64(const std::array<std::uint64_t, 4>& counter,
+                                        const std::array<std::uint64_t, 2>& key) {
+  return Encrypt(counter, key);
 }
 
 std::uint64_t HashName(std::string_view name) {
@@ -28,11 +38,11 @@ RandomStream::RandomStream(std::uint64_t seed, std::string_view channel, std::ui
     : key_{seed, HashName(channel)}, run_(run) {}
 
 std::array<std::uint64_t, 4> RandomStream::Bits(std::uint64_t sample, std::uint64_t slot) const {
-  return Philox4x64({sample, slot, run_, 0}, key_);
+  return Encrypt({sample, slot, run_, 0}, key_);
 }
 
 std::array<double, 4> RandomStream::Uniforms(std::uint64_t sample, std::uint64_t slot) const {
-  const auto bits = Bits(sample, slot);
+  const auto bits = Encrypt({sample, slot, run_, 0}, key_);
   std::array<double, 4> u{};
   // the centres of 2^52 equal cells, all exact in a double: never 0, never 1, symmetric about 1/2
   for (std::size_t i = 0; i < 4; ++i) u[i] = (static_cast<double>(bits[i] >> 12) + 0.5) * 0x1p-52;
@@ -80,7 +90,7 @@ std::array<double, 2> PickDirection(std::uint32_t bits) {
 }  // namespace
 
 std::array<double, 6> RandomStream::SixNormals(std::uint64_t sample, std::uint64_t slot) const {
-  const auto bits = Bits(sample, slot);
+  const auto bits = Encrypt({sample, slot, run_, 0}, key_);
   std::array<double, 6> n{};
   for (std::size_t i = 0; i < 3; ++i) {
     const double u = (static_cast<double>(bits[i] >> 32) + 0.5) * 0x1p-32;

@@ -100,7 +100,8 @@ std::unique_ptr<Channel> MakeChannel(int index, const SensorEntry& entry, const 
                                                *assembly.network());
   }
   const Rate truth_rate = assembly.motion->rate();
-  const sim::SensorContext context{random, assembly.clock, {0, 0, -scenario.gravity_m_s2}, truth_rate};
+  const sim::SensorContext context{
+      random, assembly.clock, {0, 0, -scenario.gravity_m_s2}, truth_rate, scenario.water.temperature_C};
   auto sensor = FindKind(sim::SensorKinds(), entry.kind.kind()).make(entry.kind.params(), context);
   return std::make_unique<SensorChannel>(index, std::move(sensor), truth_rate);
 }

@@ -4,15 +4,28 @@
 #include <numbers>
 
 namespace piperun::scenarios {
+namespace {
+
+/// Puts a sensor's sample into a measurement; false when there is none.
+struct Deliver {
+  Measurement& measurement;
+  bool operator()(const sim::LostSample&) const { return false; }
+  template <class Sample>
+  bool operator()(const Sample& sample) const {
+    measurement.value = sample;
+    return true;
+  }
+};
+
+}  // namespace
 
 SensorChannel::SensorChannel(int index, std::unique_ptr<sim::Sensor> sensor, Rate truth_rate)
     : sensor_(std::move(sensor)), step_(SampleOffset(1, truth_rate) + Duration(1)) {
   measurement_.channel = index;
 }
 
-const Measurement& SensorChannel::Take(const sim::TruthWindow& window) {
-  std::visit([this](const auto& value) { measurement_.value = value; }, sensor_->Sample(next_++, window));
-  return measurement_;
+const Measurement* SensorChannel::Take(const sim::TruthWindow& window) {
+  return std::visit(Deliver{measurement_}, sensor_->Sample(next_++, window)) ? &measurement_ : nullptr;
 }
 
 HydrophoneChannel::HydrophoneChannel(int index, const acoustics::HydrophoneParams& params,
@@ -49,7 +62,7 @@ void HydrophoneChannel::Hear(const sim::ContactEvent& event) {
                    CalcContactTime_s(event, soft_ball_, rigid_contact_time_s_)});
 }
 
-const Measurement& HydrophoneChannel::Take(const sim::TruthWindow& window) {
+const Measurement* HydrophoneChannel::Take(const sim::TruthWindow& window) {
   const RobotTime start = StampOf(0);
   const auto listener = [&](TrueTime recorder_time) {
     const TrueTime t = clock_.ToTrue(start + recorder_time.time_since_epoch());
@@ -58,7 +71,7 @@ const Measurement& HydrophoneChannel::Take(const sim::TruthWindow& window) {
   hydrophone_.Render(listener, counts_);
   next_sample_ += static_cast<std::int64_t>(counts_.size());
   std::get<AudioBlock>(measurement_.value).stamp = StampOf(next_sample_ - 1);
-  return measurement_;
+  return &measurement_;
 }
 
 double CalcContactTime_s(const sim::ContactEvent& event, bool soft_ball, double rigid_s) {

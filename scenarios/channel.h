@@ -27,8 +27,8 @@ class Channel {
   virtual void Hear(const sim::ContactEvent&) {}
   /// The longest stretch of truth a measurement looks back on.
   virtual Duration history() const = 0;
-  /// Takes the next measurement; valid until the next call.
-  virtual const Measurement& Take(const sim::TruthWindow& window) = 0;
+  /// Takes the next measurement; valid until the next call. Null: it was lost on its way.
+  virtual const Measurement* Take(const sim::TruthWindow& window) = 0;
 };
 
 /// A channel over one of sim's sensors. `index` becomes Measurement::channel.
@@ -36,9 +36,9 @@ class SensorChannel : public Channel {
  public:
   SensorChannel(int index, std::unique_ptr<sim::Sensor> sensor, Rate truth_rate);
   TrueTime due() const override { return sensor_->DueTime(next_); }
-  Duration lookahead() const override { return step_; }
-  Duration history() const override { return SampleOffset(1, sensor_->rate()); }
-  const Measurement& Take(const sim::TruthWindow& window) override;
+  Duration lookahead() const override { return step_ + sensor_->lookahead(); }
+  Duration history() const override { return sensor_->history(); }
+  const Measurement* Take(const sim::TruthWindow& window) override;
   const sim::Sensor& sensor() const { return *sensor_; }
 
  private:
@@ -59,7 +59,7 @@ class HydrophoneChannel : public Channel {
   Duration contact_delay() const override { return sim::kContactEventDelay; }
   void Hear(const sim::ContactEvent& event) override;
   Duration history() const override;
-  const Measurement& Take(const sim::TruthWindow& window) override;
+  const Measurement* Take(const sim::TruthWindow& window) override;
   std::int64_t clipped_samples() const { return hydrophone_.clipped_samples(); }
 
  private:

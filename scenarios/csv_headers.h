@@ -11,6 +11,7 @@ inline constexpr std::string_view kImuHeader =
 inline constexpr std::string_view kIncrementsHeader =
     "#timestamp [ns],dtheta_S_x [rad],dtheta_S_y [rad],dtheta_S_z [rad],"
     "dv_S_x [m s^-1],dv_S_y [m s^-1],dv_S_z [m s^-1]\n";
+inline constexpr std::string_view kFlagsHeader = "#timestamp [ns],saturated [],duplicated []\n";
 inline constexpr std::string_view kMagHeader = "#timestamp [ns],m_S_x [T],m_S_y [T],m_S_z [T]\n";
 inline constexpr std::string_view kPressureHeader = "#timestamp [ns],pressure [Pa]\n";
 inline constexpr std::string_view kBallHeader =

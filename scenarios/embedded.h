@@ -14,6 +14,7 @@ struct EmbeddedFile {
 const std::vector<EmbeddedFile>& EmbeddedScenarios();      ///< scenarios/library/*.yaml
 const std::vector<EmbeddedFile>& EmbeddedMaterials();      ///< assets/materials/*.yaml
 const std::vector<EmbeddedFile>& EmbeddedBalls();          ///< assets/balls/*.yaml
+const std::vector<EmbeddedFile>& EmbeddedSensors();        ///< assets/sensors/*.yaml
 const std::vector<EmbeddedFile>& EmbeddedNetworks();       ///< assets/networks/*.inp
 const std::vector<EmbeddedFile>& EmbeddedMaterialRules();  ///< assets/materials/rules/*.yaml
 

@@ -75,13 +75,17 @@ KindEntry& KindEntry::operator=(const KindEntry& other) {
 std::string_view KindEntry::records() const { return FindOption(options_, kind_).records; }
 
 void KindEntry::Visit(ParamVisitor& v) {
+  VisitKind(v);
+  VisitParams(v);
+}
+
+void KindEntry::VisitKind(ParamVisitor& v) {
   std::vector<std::string_view> names;
   for (const KindOption& option : options_()) names.push_back(option.name);
   const std::string before = kind_;
   v.Choice({.name = "kind", .doc = "Which kind this is; the other keys depend on it.", .required = true},
            names, kind_);
   if (kind_ != before) params_ = FindOption(options_, kind_).make_params();
-  params_->Visit(v);
 }
 
 }  // namespace piperun::scenarios

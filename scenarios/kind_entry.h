@@ -40,6 +40,9 @@ class KindEntry {
   Options options() const { return options_; }
   /// Kind first, then the parameters of the kind just read.
   void Visit(ParamVisitor& v);
+  /// The two halves of Visit(), for whoever has something to say in between.
+  void VisitKind(ParamVisitor& v);
+  void VisitParams(ParamVisitor& v) { params_->Visit(v); }
 
  private:
   Options options_;

@@ -79,6 +79,7 @@ Scenario ReadScenario(YamlDocument document, const std::filesystem::path& folder
                       const std::vector<std::string>& overrides) {
   for (const std::string& assignment : overrides) document.Set(assignment);
   Scenario scenario;
+  scenario.folder = folder;
   document.Read([&](ParamVisitor& v) { scenario.Visit(v); }, &scenario.sources);
   for (std::size_t i = 0; i < scenario.expect.size(); ++i) {
     RequireSensible(scenario.expect[i], "expect[" + std::to_string(i) + "]", scenario.sources);

@@ -57,21 +57,35 @@ class ImuWriter : public CsvWriter {
   void Write(const Measurement& measurement) override {
     const auto& sample = std::get<ImuSample>(measurement.value);
     CsvRow(data_) << Nanoseconds(sample.stamp) << sample.w_WS_S_rad_s << sample.f_WS_S_m_s2 << kEndOfRow;
-    if (!sample.increments) return;
-    if (!increments_) {
-      increments_ = std::make_unique<OutputFile>(folder_ / "increments.csv");
-      increments_->Append(kIncrementsHeader);
+    if (sample.flags.any()) {
+      CsvRow(Open(flags_, "flags.csv", kFlagsHeader))
+          << Nanoseconds(sample.stamp) << std::int64_t{sample.flags.saturated}
+          << std::int64_t{sample.flags.duplicated} << kEndOfRow;
     }
-    CsvRow(*increments_) << Nanoseconds(sample.stamp) << sample.increments->dtheta_S_rad
-                         << sample.increments->dv_S_m_s << kEndOfRow;
+    if (sample.increments) {
+      CsvRow(Open(increments_, "increments.csv", kIncrementsHeader))
+          << Nanoseconds(sample.stamp) << sample.increments->dtheta_S_rad << sample.increments->dv_S_m_s
+          << kEndOfRow;
+    }
   }
   void Close() override {
     CsvWriter::Close();
     if (increments_) increments_->Close();
+    if (flags_) flags_->Close();
   }
 
  private:
+  /// A file that only exists when there is something to write into it.
+  OutputFile& Open(std::unique_ptr<OutputFile>& file, const char* name, std::string_view header) {
+    if (!file) {
+      file = std::make_unique<OutputFile>(folder_ / name);
+      file->Append(header);
+    }
+    return *file;
+  }
+
   std::unique_ptr<OutputFile> increments_;
+  std::unique_ptr<OutputFile> flags_;
 };
 
 class MagWriter : public CsvWriter {

@@ -9,7 +9,7 @@
 
 namespace piperun::scenarios {
 
-/// Writes one channel's record under mav0/NAME: data.csv (and increments.csv), or audio; sensor.yaml at the
+/// Writes one channel's record under mav0/NAME: data.csv (and increments.csv, flags.csv), or audio; sensor.yaml at the
 /// end.
 class MeasurementWriter {
  public:

@@ -3,6 +3,7 @@
 #include "base/number.h"
 #include "scenarios/ball_presets.h"
 #include "scenarios/scenario.h"
+#include "scenarios/sensor_presets.h"
 #include "scenarios/unit_alias.h"
 
 namespace piperun::scenarios {
@@ -94,6 +95,12 @@ void WritePresets(std::string& out) {
   out += "\n## Ball presets\n\nValues of `ball: {preset: NAME}`, with their sources in `assets/balls`.\n\n";
   for (const BallPreset& preset : BallPresets()) {
     out += "- `" + std::string(preset.name) + "`: " + preset.description + ".\n";
+  }
+  out +=
+      "\n## Sensor presets\n\nValues of `sensors: {NAME: {kind: KIND, preset: NAME}}`, with their sources in "
+      "`assets/sensors`.\n\n";
+  for (const SensorPreset& preset : SensorPresets()) {
+    out += "- `" + preset.name + "` (" + preset.Kinds() + "): " + preset.description + ".\n";
   }
 }
 

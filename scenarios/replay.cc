@@ -1,6 +1,7 @@
 #include "scenarios/replay.h"
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "acoustics/audio_file.h"
@@ -51,32 +52,78 @@ class CsvLog : public ChannelLog {
   CsvReader data_;
 };
 
+/// The rows of flags.csv, one ahead. Most samples have none.
+class FlagsLog {
+ public:
+  explicit FlagsLog(const fs::path& path) : path_(path), reader_(path, kFlagsHeader) { Advance(); }
+
+  /// Those of the sample with this stamp. Stamps rise.
+  ImuFlags At(std::int64_t stamp) {
+    if (!more_ || stamp_ > stamp) return {};
+    if (stamp_ < stamp) Refuse("this stamp is not in data.csv");
+    const ImuFlags flags = flags_;
+    Advance();
+    return flags;
+  }
+  void End() const {
+    if (more_) Refuse("this stamp is not in data.csv");
+  }
+
+ private:
+  void Advance() {
+    std::array<double, 2> v{};
+    more_ = reader_.Next(stamp_, v);
+    if (!more_) return;
+    const bool known = v[0] >= 0 && v[0] < 64 && v[0] == std::floor(v[0]) && (v[1] == 0 || v[1] == 1);
+    if (!known) Refuse("flags are: saturated 0 to 63, duplicated 0 or 1");
+    flags_ = {static_cast<std::uint8_t>(v[0]), v[1] == 1};
+  }
+  [[noreturn]] void Refuse(const std::string& problem) const {
+    throw InputError(problem, "", path_.string() + ", stamp " + std::to_string(stamp_));
+  }
+
+  fs::path path_;
+  CsvReader reader_;
+  bool more_ = false;
+  std::int64_t stamp_ = 0;
+  ImuFlags flags_;
+};
+
 class ImuLog : public CsvLog {
  public:
   ImuLog(int channel, const fs::path& folder) : CsvLog(channel, folder, kImuHeader) {
-    const fs::path increments = folder / "increments.csv";
+    const fs::path increments = folder / "increments.csv", flags = folder / "flags.csv";
     if (fs::exists(increments)) increments_ = std::make_unique<CsvReader>(increments, kIncrementsHeader);
+    if (fs::exists(flags)) flags_ = std::make_unique<FlagsLog>(flags);
   }
 
  protected:
   bool Read() override {
     std::array<double, 6> v{};
     std::int64_t stamp = 0;
-    if (!data_.Next(stamp, v)) return false;
-    ImuSample sample{ToStamp(stamp), {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, std::nullopt};
-    if (increments_) {
-      std::int64_t increment_stamp = 0;
-      if (!increments_->Next(increment_stamp, v) || increment_stamp != stamp) {
-        throw InputError("increments.csv and data.csv do not have the same stamps", "", Name());
-      }
-      sample.increments = ImuIncrements{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+    if (!data_.Next(stamp, v)) {
+      if (flags_) flags_->End();
+      return false;
     }
+    ImuSample sample{ToStamp(stamp), {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, std::nullopt};
+    if (increments_) sample.increments = ReadIncrements(stamp);
+    if (flags_) sample.flags = flags_->At(stamp);
     measurement_.value = sample;
     return true;
   }
 
  private:
+  ImuIncrements ReadIncrements(std::int64_t stamp) {
+    std::array<double, 6> v{};
+    std::int64_t increment_stamp = 0;
+    if (!increments_->Next(increment_stamp, v) || increment_stamp != stamp) {
+      throw InputError("increments.csv and data.csv do not have the same stamps", "", Name());
+    }
+    return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+  }
+
   std::unique_ptr<CsvReader> increments_;
+  std::unique_ptr<FlagsLog> flags_;
 };
 
 class MagLog : public CsvLog {

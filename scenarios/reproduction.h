@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -13,6 +14,7 @@ struct ReproduceOptions {
   double size = 1;  ///< 1: as published; 0.01: a hundredth of the runs, with bounds as much wider
   int jobs = 0;     ///< threads, whole runs each; 0: all cores
   std::uint64_t seed = 1;
+  std::filesystem::path out{};  ///< folder for what the study draws; empty: nothing is drawn
   const std::atomic<bool>* stop = nullptr;
   std::function<void(double fraction, const std::string& note)> progress;
 };
@@ -45,6 +47,7 @@ struct Reproduction {
   std::string_view name;
   std::string_view doc;
   ReproduceReport (*run)(const ReproduceOptions& options);
+  bool draws = false;  ///< it has something to put into ReproduceOptions::out
 };
 
 /// Generated from scenarios/reproductions/*.cc.

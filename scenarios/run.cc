@@ -150,10 +150,11 @@ class RunLoop {
       const auto first = std::min_element(due_.begin(), due_.end());
       if (first == due_.end() || *first > horizon) return;
       const auto i = static_cast<std::size_t>(first - due_.begin());
-      const Measurement& measurement = assembly_.channels[i]->Take(window_);
+      const Measurement* measurement = assembly_.channels[i]->Take(window_);
       *first = assembly_.channels[i]->due();
-      writers_[i]->Write(measurement);
-      bank_.Ingest(measurement);
+      if (!measurement) continue;
+      writers_[i]->Write(*measurement);
+      bank_.Ingest(*measurement);
     }
   }
 

@@ -2,10 +2,41 @@
 
 #include <array>
 
+#include "base/check.h"
 #include "scenarios/ball_presets.h"
 #include "scenarios/materials.h"
+#include "scenarios/sensor_presets.h"
 
 namespace piperun::scenarios {
+namespace {
+
+/// Tells every sensor where to look for a preset's file.
+class SensorMap : public VectorParamMap<SensorEntry> {
+ public:
+  explicit SensorMap(Scenario& scenario)
+      : VectorParamMap(scenario.sensors), sensors_(scenario.sensors), folder_(scenario.folder) {}
+  void Add(const std::string& name) override {
+    VectorParamMap::Add(name);
+    sensors_.back().folder = folder_;
+  }
+
+ private:
+  std::vector<SensorEntry>& sensors_;
+  const std::filesystem::path& folder_;
+};
+
+/// The preset's section for this kind. `preset` becomes "none" where it is a file.
+KindEntry StartFromPreset(const std::string& kind, const std::filesystem::path& folder, std::string& preset) {
+  const SensorPreset loaded = LoadSensorPreset(preset, folder);
+  const KindEntry* section = loaded.Find(kind);
+  if (!section) {
+    throw InputError("the preset '" + preset + "' has no " + kind + "; it has: " + loaded.Kinds(), "preset");
+  }
+  if (loaded.from_file) preset = "none";
+  return *section;
+}
+
+}  // namespace
 
 void WaterParams::Visit(ParamVisitor& v) {
   v.Number({"temperature_C", "Water temperature; sets density, viscosity and speed of sound."},
@@ -158,6 +189,17 @@ void MissionParams::Visit(ParamVisitor& v) {
            {.min = 1, .max = 1e5}, stuck_after_s);
 }
 
+void SensorEntry::Visit(ParamVisitor& v) {
+  kind.VisitKind(v);
+  const std::string before = preset;
+  v.Text({"preset",
+          "Board whose values the other keys' defaults are: a name of the library, or a file of that form "
+          "(`piperun allan --preset`), seen from this one; none: as listed with the kind."},
+         preset);
+  if (preset != before && preset != "none") kind = StartFromPreset(kind.kind(), folder, preset);
+  kind.VisitParams(v);
+}
+
 void StartParams::Visit(ParamVisitor& v) {
   static constexpr std::array<std::string_view, 2> kMaps{"as_built", "none"};
   static constexpr std::array<std::string_view, 3> kHeadings{"from_map", "given", "unknown"};
@@ -221,7 +263,8 @@ void Scenario::Visit(ParamVisitor& v) {
   v.Struct({"motion", "What moves the ball."}, motion);
   v.Struct({"ball", "The ball."}, ball);
   v.Struct({"mission", "Where it goes in and out, and when to give up."}, mission);
-  v.NamedItems({"sensors", "Recording channels, by name."}, sensors);
+  SensorMap sensor_map(*this);
+  v.Map({"sensors", "Recording channels, by name."}, sensor_map);
   v.NamedItems({"estimators", "Filters in the loop, by name."}, estimators);
   v.Struct({"score", "How estimates are compared with the truth."}, score);
   v.Struct({"output", "What is written."}, output);

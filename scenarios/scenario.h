@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -131,10 +132,14 @@ struct MissionParams {
   void Visit(ParamVisitor& v);
 };
 
+/// A recording channel. Read, it starts from the preset's section for its kind; what the file says on top of
+/// that counts. Once read, a preset that was a file is "none": its values are here.
 struct SensorEntry {
   std::string name;
+  std::string preset = "none";
   KindEntry kind{SensorOptions, "imu"};
-  void Visit(ParamVisitor& v) { kind.Visit(v); }
+  std::filesystem::path folder;  ///< where a preset's file is looked for
+  void Visit(ParamVisitor& v);
 };
 
 /// What the crew tells a filter before the launch. Assumed values, never the truth's own.
@@ -201,7 +206,8 @@ struct Scenario {
   ScoreParams score;
   OutputParams output;
   std::vector<ExpectEntry> expect;
-  SourceMap sources;  ///< where each value stands in the file it was read from
+  std::filesystem::path folder;  ///< of the file it was read from: files it names are looked for there
+  SourceMap sources;             ///< where each value stands in the file it was read from
 
   void Visit(ParamVisitor& v);
 };

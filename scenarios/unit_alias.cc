@@ -19,6 +19,14 @@ struct Spelling {
 // Longer SI suffixes stand before the shorter ones they end in; those that are no plain unit have no other
 // spelling.
 constexpr Spelling kSpellings[] = {
+    {"_rad_s_per_m2_s4", "_deg_h_per_g2", kDegree / 3600 / (kStandardGravity * kStandardGravity)},
+    {"_m_s2_per_m2_s4", "_ug_per_g2", 1e-6 / kStandardGravity},
+    {"_rad_s_per_m_s2", "_deg_s_per_g", kDegree / kStandardGravity},
+    {"_rad_s_per_m_s2", "_deg_h_per_g", kDegree / 3600 / kStandardGravity},
+    {"_rad_s_per_K", "_deg_s_per_K", kDegree},
+    {"_m_s2_per_K", "_mg_per_K", 1e-3 * kStandardGravity},
+    {"_per_rad_s", "_per_deg_s", 1 / kDegree},
+    {"_per_m_s2", "_per_g", 1 / kStandardGravity},
     {"_dB_m", "", 1},
     {"_N_s_m", "", 1},
     {"_N_m", "", 1},

@@ -275,8 +275,20 @@ class MapReader : public ParamVisitor {
   void ReadMap(const YAML::Node& node, const std::string& path, const VisitFunction& visit) const {
     MapReader reader(context_, node, path);
     Remember(path, node);
-    visit(reader);
+    try {
+      visit(reader);
+    } catch (const InputError& e) {  // a struct that refuses its own values cannot know where they stand
+      if (!e.where().empty()) throw;
+      context_.Refuse(reader.FindNode(e.key_path()), Child(path, e.key_path()), e.problem());
+    }
     reader.Done();
+  }
+
+  /// The value of a key, or the whole map where there is no such key.
+  YAML::Node FindNode(const std::string& key) const {
+    const auto entry =
+        std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.key == key; });
+    return entry == entries_.end() ? node_ : entry->value;
   }
 
   void RequireList(const YAML::Node& node, const std::string& path) const {

@@ -1,116 +1,164 @@
 #include "sim/imu_error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace piperun::sim {
 namespace {
 
-// Slots within a triad. Each term has its own, so that switching one on or off changes no other.
+// Slots within a triad. Each term has its own, or its own half of one, so that switching one on or off
+// changes no other.
 constexpr std::uint64_t kNoiseSlot = 0;
-constexpr std::uint64_t kWalkSlot = 1;
-constexpr std::uint64_t kPoleSlot = 2;  // six: 24 normals
+constexpr std::uint64_t kWalkSlot = 1;  // and b_GM
+constexpr std::uint64_t kPoleSlot = 2;  // four, of two poles each
 constexpr std::uint64_t kBiasSlot = 8;
 constexpr std::uint64_t kScaleSlot = 9;
-constexpr std::uint64_t kPoleStartSlot = 10;  // six
-static_assert(kPoleStartSlot + 3 * kFlickerPoles / 4 == kTriadSlots);
+constexpr std::uint64_t kPoleStartSlot = 10;  // four
+static_assert(kPoleStartSlot + kFlickerPoles / 2 <= kTriadSlots);
 
-constexpr double kFastestPole_s = 1e-2;
+// and beyond kMoreTriadSlots
+constexpr std::uint64_t kScaleDriftSlot = kMoreTriadSlots;
+constexpr std::uint64_t kRoundingSlot = kMoreTriadSlots + 1;
+constexpr std::uint64_t kStepNoiseSlot = kMoreTriadSlots + 2;
+constexpr std::uint64_t kStartSlot = kMoreTriadSlots + 3;  // of b_GM and s_i
+constexpr std::uint64_t kRoundingStartSlot = kMoreTriadSlots + 4;
+constexpr std::uint64_t kMisalignmentSlot = kMoreTriadSlots + 5;
+
+constexpr double kUpdatesPerTime = 16;  // of a slow process
 
 Vector3d Normal3(const TriadStream& s, std::uint64_t sample, std::uint64_t slot) {
   const auto n = s.random.Normals(sample, s.first_slot + slot);
   return {n[0], n[1], n[2]};
 }
 
-/// Three normals per pole, four per slot.
-std::array<Vector3d, kFlickerPoles> PoleNormals(const TriadStream& s, std::uint64_t sample,
-                                                std::uint64_t slot) {
-  std::array<double, 3 * kFlickerPoles> flat;
-  for (std::size_t i = 0; i < flat.size(); i += 4) {
-    const auto n = s.random.Normals(sample, s.first_slot + slot + i / 4);
-    for (std::size_t j = 0; j < 4; ++j) flat[i + j] = n[j];
-  }
-  std::array<Vector3d, kFlickerPoles> poles;
-  for (std::size_t i = 0; i < kFlickerPoles; ++i) poles[i] = {flat[3 * i], flat[3 * i + 1], flat[3 * i + 2]};
-  return poles;
+GaussMarkov MakeGaussMarkov(double sd, double correlation_s, double dt_s) {
+  return {sd, std::exp(-dt_s / correlation_s), sd * std::sqrt(-std::expm1(-2 * dt_s / correlation_s))};
 }
 
-void StepPoles(TriadErrorState& state, std::uint64_t k, const TriadStream& stream,
+/// Updated every sample, or every T / 16 where that is longer.
+GaussMarkov MakeHeldGaussMarkov(double sd, double correlation_s, double dt_s) {
+  const double hold = std::max(1.0, std::floor(correlation_s / (kUpdatesPerTime * dt_s)));
+  GaussMarkov process = MakeGaussMarkov(sd, correlation_s, hold * dt_s);
+  process.hold = static_cast<std::int64_t>(hold);
+  return process;
+}
+
+Vector3d First(const std::array<double, 6>& n) { return {n[0], n[1], n[2]}; }
+Vector3d Second(const std::array<double, 6>& n) { return {n[3], n[4], n[5]}; }
+
+std::array<double, 6> SixNormals(const TriadStream& s, std::uint64_t sample, std::uint64_t slot) {
+  return s.random.SixNormals(sample, s.first_slot + slot);
+}
+
+/// Three numbers even on (-1/2, 1/2).
+Vector3d Even3(const TriadStream& s, std::uint64_t sample, std::uint64_t slot) {
+  const auto u = s.random.Uniforms(sample, s.first_slot + slot);
+  return Vector3d(u[0], u[1], u[2]) - Vector3d::Constant(0.5);
+}
+
+Matrix3d DrawMisalignment(double sd, const TriadStream& stream) {
+  Matrix3d m = Matrix3d::Zero();
+  const auto n = SixNormals(stream, 0, kMisalignmentSlot);
+  m << 0, n[0], n[1], n[2], 0, n[3], n[4], n[5], 0;
+  return sd * m;
+}
+
+TriadCurvature MakeCurvature(const TriadErrorParams& p) {
+  TriadCurvature c{p.scale_second_order, 0.5 * p.scale_asymmetry, p.vibration_rectification};
+  c.on = !(c.second_order.isZero(0) && c.half_asymmetry.isZero(0) && c.rectification.isZero(0));
+  return c;
+}
+
+Vector3d CalcCurvature(const Vector3d& x, const Vector3d& f, const TriadCurvature& c) {
+  const Vector3d size = x.cwiseAbs();
+  const Vector3d squares = c.whole_force ? Vector3d::Constant(f.squaredNorm()) : Vector3d(f.cwiseAbs2());
+  return c.second_order.cwiseProduct(size).cwiseProduct(x) + c.half_asymmetry.cwiseProduct(size) +
+         c.rectification.cwiseProduct(squares);
+}
+
+void MakeDrift(const TriadErrorParams& p, double dt_s, TriadErrorCoefficients& c) {
+  c.markov = MakeGaussMarkov(p.gauss_markov_sd, p.gauss_markov_time_s, dt_s);
+  c.scale_drift = MakeHeldGaussMarkov(p.scale_instability, p.scale_instability_time_s, dt_s);
+  c.bias_per_K = p.temperature_bias;
+  c.scale_per_K = p.temperature_scale;
+  c.ramp = dt_s * p.rate_ramp;
+  c.quantum_rate = std::sqrt(12.0) * p.quantisation / dt_s;
+  c.has_deterministic_drift = !(c.bias_per_K.isZero(0) && c.ramp.isZero(0));
+  c.has_scale_drift = !c.scale_per_K.isZero(0) || c.scale_drift.sd > 0;
+}
+
+Vector3d Next(const GaussMarkov& process, const Vector3d& x, const Vector3d& normals) {
+  return process.decay * x + process.drive * normals;
+}
+
+/// The poles whose time has come, two from each block of normals.
+void StepPoles(TriadErrorState& state, std::int64_t k, const TriadStream& stream,
                const TriadErrorCoefficients& c) {
-  const auto normals = PoleNormals(stream, k, kPoleSlot);
-  for (std::size_t i = 0; i < kFlickerPoles; ++i) {
-    state.poles[i] = c.pole_decay[i] * state.poles[i] + c.pole_drive[i] * normals[i];
+  for (std::size_t i = 0; i < kFlickerPoles; i += 2) {
+    if (k < state.pole_due[i] && k < state.pole_due[i + 1]) continue;
+    const auto n = SixNormals(stream, static_cast<std::uint64_t>(k), kPoleSlot + i / 2);
+    for (const std::size_t j : {i, i + 1}) {
+      if (k < state.pole_due[j]) continue;
+      state.poles[j] = Next(c.poles[j], state.poles[j], j == i ? First(n) : Second(n));
+      state.pole_due[j] += c.poles[j].hold;
+    }
   }
+}
+
+void StepWalkAndMarkov(TriadErrorState& state, std::uint64_t k, const TriadStream& stream,
+                       const TriadErrorCoefficients& c) {
+  const auto n = SixNormals(stream, k, kWalkSlot);
+  state.walk += c.walk_sd * First(n);
+  state.markov = Next(c.markov, state.markov, Second(n));
+}
+
+void StepScaleMarkov(TriadErrorState& state, std::int64_t k, const TriadStream& stream,
+                     const TriadErrorCoefficients& c) {
+  if (k < state.scale_due) return;
+  const auto n = SixNormals(stream, static_cast<std::uint64_t>(k), kScaleDriftSlot);
+  state.scale_markov = Next(c.scale_drift, state.scale_markov, First(n));
+  state.scale_due += c.scale_drift.hold;
 }
 
 }  // namespace
-
-const TriadFieldNames kGyroFields{
-    .bias = "bias_rad_s",
-    .bias_sd = "bias_sd_rad_s",
-    .noise = "noise_rad_s_sqrtHz",
-    .bias_instability = "bias_instability_rad_s",
-    .rate_random_walk = "rate_random_walk_rad_s2_sqrtHz",
-    .range = "range_rad_s",
-    .resolution = "resolution_rad_s",
-};
-
-const TriadFieldNames kAccelFields{
-    .bias = "bias_m_s2",
-    .bias_sd = "bias_sd_m_s2",
-    .noise = "noise_m_s2_sqrtHz",
-    .bias_instability = "bias_instability_m_s2",
-    .rate_random_walk = "rate_random_walk_m_s3_sqrtHz",
-    .range = "range_m_s2",
-    .resolution = "resolution_m_s2",
-};
-
-void TriadErrorParams::Visit(ParamVisitor& v, const TriadFieldNames& names) {
-  const Range small = Range::Between(-0.5, 0.5);
-  v.Vector({names.bias, "Constant bias of the three axes."}, Range::Any(), bias);
-  v.Number({names.bias_sd, "Turn-on bias: standard deviation per axis, drawn once per run."},
-           Range::NonNegative(), bias_sd);
-  v.Vector({"scale_error", "Constant scale-factor error of the three axes (0.01 reads 1 % too much)."}, small,
-           scale_error);
-  v.Number({"scale_error_sd", "Scale-factor error: standard deviation per axis, drawn once per run."},
-           Range::Between(0, 0.1), scale_error_sd);
-  v.Matrix({"misalignment", "M, row by row: M_ij is the part of true axis j that axis i reads too much."},
-           small, misalignment);
-  v.Number({names.noise, "White noise density N (angle or velocity random walk)."}, Range::NonNegative(),
-           noise);
-  v.Number({names.bias_instability, "Bias instability B; the Allan deviation is flat at 0.664 B."},
-           Range::NonNegative(), bias_instability);
-  v.Number({names.rate_random_walk, "Random walk K of the bias."}, Range::NonNegative(), rate_random_walk);
-  v.NumberOr({names.range, "The reading saturates at plus and minus this value."}, Range::Positive(), "none",
-             range);
-  v.Number({names.resolution, "One count of the output register; 0 means unrounded."}, Range::NonNegative(),
-           resolution);
-}
 
 TriadErrorCoefficients MakeCoefficients(const TriadErrorParams& p, Rate rate, const TriadStream& stream) {
   const double dt = rate.Period_s();
   const Vector3d scale = p.scale_error + p.scale_error_sd * Normal3(stream, 0, kScaleSlot);
   TriadErrorCoefficients c;
   c.sensitivity = Matrix3d::Identity() + p.misalignment;
+  if (p.misalignment_sd > 0) c.sensitivity += DrawMisalignment(p.misalignment_sd, stream);
   c.sensitivity.diagonal() += scale;
   c.bias = p.bias + p.bias_sd * Normal3(stream, 0, kBiasSlot);
   c.noise_sd = p.noise / std::sqrt(dt);
-  c.pole_sd = p.bias_instability * std::sqrt(std::numbers::ln10 / std::numbers::pi);
-  double correlation_s = kFastestPole_s;
-  for (std::size_t i = 0; i < kFlickerPoles; ++i, correlation_s *= 10) {
-    c.pole_decay[i] = std::exp(-dt / correlation_s);
-    c.pole_drive[i] = c.pole_sd * std::sqrt(-std::expm1(-2 * dt / correlation_s));
+  c.pole_sd = p.bias_instability * std::sqrt(kFlickerVariance);
+  for (std::size_t i = 0; i < kFlickerPoles; ++i) {
+    c.poles[i] = MakeHeldGaussMarkov(c.pole_sd, kFlickerTimes_s[i], dt);
   }
   c.walk_sd = p.rate_random_walk * std::sqrt(dt);
   if (p.range) c.output.range = *p.range;
   c.output.resolution = p.resolution;
+  c.curvature = MakeCurvature(p);
+  c.g_sensitivity = p.g_sensitivity;
+  c.has_g_sensitivity = !p.g_sensitivity.isZero(0);
+  MakeDrift(p, dt, c);
   return c;
 }
 
 TriadErrorState MakeState(const TriadErrorCoefficients& c, const TriadStream& stream) {
   TriadErrorState state;
-  state.poles = PoleNormals(stream, 0, kPoleStartSlot);
-  for (Vector3d& pole : state.poles) pole *= c.pole_sd;
+  for (std::size_t i = 0; i < kFlickerPoles; i += 2) {
+    const auto n = SixNormals(stream, 0, kPoleStartSlot + i / 2);
+    state.poles[i] = c.pole_sd * First(n);
+    state.poles[i + 1] = c.pole_sd * Second(n);
+  }
+  for (std::size_t i = 0; i < kFlickerPoles; ++i) state.pole_due[i] = c.poles[i].hold;
+  state.scale_due = c.scale_drift.hold;
+  const auto n = SixNormals(stream, 0, kStartSlot);
+  state.markov = c.markov.sd * First(n);
+  state.scale_markov = c.scale_drift.sd * Second(n);
+  state.rounding = Even3(stream, 0, kRoundingStartSlot);
   return state;
 }
 
@@ -119,17 +167,54 @@ Vector3d CalcBias(const TriadErrorState& state, const TriadErrorCoefficients& c)
   if (c.pole_sd > 0) {
     for (const Vector3d& pole : state.poles) bias += pole;
   }
+  if (c.markov.sd > 0) bias += state.markov;
+  if (c.has_deterministic_drift) bias += state.deterministic_drift;
   return bias;
 }
 
-Vector3d StepError(TriadErrorState& state, std::int64_t k, const TriadStream& stream,
+void StepDrift(TriadErrorState& state, std::int64_t k, const TriadStream& stream,
+               const TriadErrorCoefficients& c, double warming_K) {
+  if (k > 0 && (c.walk_sd > 0 || c.markov.sd > 0)) {
+    StepWalkAndMarkov(state, static_cast<std::uint64_t>(k), stream, c);
+  }
+  if (k > 0 && c.pole_sd > 0) StepPoles(state, k, stream, c);
+  if (k > 0 && c.scale_drift.sd > 0) StepScaleMarkov(state, k, stream, c);
+  if (c.has_deterministic_drift) {
+    state.deterministic_drift = warming_K * c.bias_per_K + static_cast<double>(k) * c.ramp;
+  }
+  if (c.has_scale_drift) state.scale_drift = warming_K * c.scale_per_K + state.scale_markov;
+}
+
+Vector3d StepWhite(TriadErrorState& state, std::int64_t k, const TriadStream& stream,
                    const TriadErrorCoefficients& c) {
   const auto sample = static_cast<std::uint64_t>(k);
-  if (k > 0 && c.walk_sd > 0) state.walk += c.walk_sd * Normal3(stream, sample, kWalkSlot);
-  if (k > 0 && c.pole_sd > 0) StepPoles(state, sample, stream, c);
-  Vector3d error = CalcBias(state, c);
-  if (c.noise_sd > 0) error += c.noise_sd * Normal3(stream, sample, kNoiseSlot);
-  return error;
+  Vector3d white = Vector3d::Zero();
+  if (c.noise_sd > 0) white = c.noise_sd * Normal3(stream, sample, kNoiseSlot);
+  if (c.quantum_rate > 0) {
+    const Vector3d before = state.rounding;
+    state.rounding = Even3(stream, sample, kRoundingSlot);
+    white += c.quantum_rate * (state.rounding - before);
+  }
+  return white;
+}
+
+Vector3d StepError(TriadErrorState& state, std::int64_t k, const TriadStream& stream,
+                   const TriadErrorCoefficients& c, double warming_K) {
+  StepDrift(state, k, stream, c, warming_K);
+  return CalcBias(state, c) + StepWhite(state, k, stream, c);
+}
+
+Vector3d DrawStepNoise(std::int64_t n, const TriadStream& stream) {
+  return First(SixNormals(stream, static_cast<std::uint64_t>(n), kStepNoiseSlot));
+}
+
+Vector3d CalcResponse(const Vector3d& x, const Vector3d& f, const TriadErrorState& state,
+                      const TriadErrorCoefficients& c) {
+  Vector3d y = c.sensitivity * x;
+  if (c.has_scale_drift) y += state.scale_drift.cwiseProduct(x);
+  if (c.has_g_sensitivity) y += c.g_sensitivity * f;
+  if (c.curvature.on) y += CalcCurvature(x, f, c.curvature);
+  return y;
 }
 
 }  // namespace piperun::sim

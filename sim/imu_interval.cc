@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/imu_steps.h"
+
 namespace piperun::sim {
 namespace {
 
@@ -22,11 +24,24 @@ Vector3d IntegrateCentre(const TruthState& a, const TruthState& b, double from, 
          IntegrateTurning(b.f_WB_B, dtheta, std::max(from, 0.5) - 1, to - 1);
 }
 
+/// Rate and angular acceleration, means over the step a -> b, in B.
+struct Turning {
+  Vector3d w;
+  Vector3d w_dot;
+};
+Turning CalcTurning(const TruthState& a, const TruthState& b, double dt_s) {
+  return {b.dtheta_B_rad / dt_s, (b.w_WB_B - a.w_WB_B) / dt_s};
+}
+
 /// Acceleration of the point relative to the centre, mean over the step a -> b, in B.
 Vector3d CalcLeverAcceleration(const TruthState& a, const TruthState& b, const Vector3d& p_BP, double dt_s) {
-  const Vector3d w = b.dtheta_B_rad / dt_s;
-  const Vector3d w_dot = (b.w_WB_B - a.w_WB_B) / dt_s;
-  return w_dot.cross(p_BP) + w.cross(w.cross(p_BP));
+  const Turning turning = CalcTurning(a, b, dt_s);
+  return turning.w_dot.cross(p_BP) + turning.w.cross(turning.w.cross(p_BP));
+}
+
+Matrix3d CalcLeverTensor(const Vector3d& w, const Vector3d& w_dot) {
+  const Matrix3d W = Skew(w);
+  return Skew(w_dot) + W * W;
 }
 
 /// Exp(theta) p - p without cancellation: sin(t)/t theta x p + (1 - cos(t))/t^2 theta x (theta x p).
@@ -46,22 +61,6 @@ Vector3d CalcVelocityIncrement(const TruthState& a, const TruthState& b, const V
   const Vector3d u_lever_before_B =
       a_is_start ? Vector3d(a.w_WB_B.cross(p_BP)) : Vector3d(-CalcTurnChange(-a.dtheta_B_rad, p_BP) / dt_s);
   return a.X_WB.q.conjugate() * dv_W + CalcTurnChange(b.dtheta_B_rad, p_BP) / dt_s - u_lever_before_B;
-}
-
-/// Calls visit(a, b, from, to, n) for every step n, from state a to state b, of which the part from `from` to
-/// `to` lies inside (begin, end].
-template <class Visit>
-void ForEachStep(const TruthWindow& window, TrueTime begin, TrueTime end, const Visit& visit) {
-  bool done = false;
-  for (std::int64_t n = window.StepAt(begin) + 1; !done; ++n) {
-    const TruthState& a = window.at(n - 1);
-    const TruthState& b = window.at(n);
-    const double step_s = Seconds(b.time - a.time);
-    const double from = std::max(0.0, Seconds(begin - a.time) / step_s);
-    const double to = std::min(1.0, Seconds(end - a.time) / step_s);
-    visit(a, b, from, to, n);
-    done = b.time >= end;
-  }
 }
 
 }  // namespace
@@ -95,6 +94,33 @@ ImuIntervalIncrements CalcImuIncrements(const TruthWindow& window, TrueTime begi
                 q_begin_B = q_begin_B * ExpSO3(part * b.dtheta_B_rad);
               });
   return {steps * dt, LogSO3(q_begin_B), dv};
+}
+
+Matrix3d CalcMeanLeverTensor(const TruthWindow& window, TrueTime begin, TrueTime end) {
+  const double dt = window.rate().Period_s();
+  double steps = 0;
+  Matrix3d sum = Matrix3d::Zero();
+  ForEachStep(window, begin, end,
+              [&](const TruthState& a, const TruthState& b, double from, double to, std::int64_t) {
+                const Turning turning = CalcTurning(a, b, dt);
+                steps += to - from;
+                sum += (to - from) * CalcLeverTensor(turning.w, turning.w_dot);
+              });
+  return sum / steps;
+}
+
+ImuSignal CalcImuStep(const TruthState& a, const TruthState& b, const Vector3d& p_BP, double dt_s) {
+  const Turning turning = CalcTurning(a, b, dt_s);
+  const Matrix3d tensor = CalcLeverTensor(turning.w, turning.w_dot);
+  return {turning.w, IntegrateCentre(a, b, 0, 1) + tensor * p_BP, tensor};
+}
+
+ImuSignal CalcImuInstant(const TruthWindow& window, TrueTime t, const Vector3d& p_BP) {
+  const std::int64_t n = std::min(window.StepAt(t) + 1, window.last());
+  const TruthState state = Interpolate(window, t);
+  const Turning turning = CalcTurning(window.at(n - 1), window.at(n), window.rate().Period_s());
+  const Matrix3d tensor = CalcLeverTensor(state.w_WB_B, turning.w_dot);
+  return {state.w_WB_B, state.f_WB_B + tensor * p_BP, tensor};
 }
 
 }  // namespace piperun::sim

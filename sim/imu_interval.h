@@ -39,4 +39,21 @@ struct ImuIntervalIncrements {
 ImuIntervalIncrements CalcImuIncrements(const TruthWindow& window, TrueTime begin, TrueTime end,
                                         const Vector3d& p_BP, const Vector3d& gravity_W);
 
+/// Mean over (begin, end] of A = Skew(w') + Skew(w)^2 in B: a point fixed in the ball at p from the centre
+/// has the acceleration A p beyond the centre's.
+Matrix3d CalcMeanLeverTensor(const TruthWindow& window, TrueTime begin, TrueTime end);
+
+/// What a perfect inertial sensor at a point fixed in the ball feels, in B.
+struct ImuSignal {
+  Vector3d w_rad_s;     ///< w_WB_B
+  Vector3d f_m_s2;      ///< the point's specific force
+  Matrix3d lever_1_s2;  ///< A of CalcMeanLeverTensor
+};
+
+/// Means over the physics step from a to b; second order in dt like CalcImuInterval.
+ImuSignal CalcImuStep(const TruthState& a, const TruthState& b, const Vector3d& p_BP, double dt_s);
+
+/// At an instant, by Interpolate; w' is that of the step around it.
+ImuSignal CalcImuInstant(const TruthWindow& window, TrueTime t, const Vector3d& p_BP);
+
 }  // namespace piperun::sim

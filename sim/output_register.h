@@ -18,6 +18,8 @@ struct OutputRegister {
     const double clipped = std::clamp(value, -range, range);
     return resolution > 0 ? resolution * std::round(clipped / resolution) : clipped;
   }
+  /// Whether the value is within the range, up to its very end.
+  bool Holds(double value) const { return std::abs(value) <= range; }
   Vector3d Read(const Vector3d& value) const { return {Read(value.x()), Read(value.y()), Read(value.z())}; }
 };
 

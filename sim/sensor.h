@@ -19,6 +19,7 @@ struct SensorContext {
   ClockModel clock;
   Vector3d gravity_W{0, 0, -9.80665};
   Rate truth_rate{1000};
+  double water_temperature_C = 10;
 };
 
 /// What an IMU's slowly varying errors add up to now; EuRoC ground truth carries it beside the pose.
@@ -27,7 +28,10 @@ struct ImuBias {
   Vector3d accel_m_s2 = Vector3d::Zero();
 };
 
-using SensorValue = std::variant<ImuSample, MagSample, PressureSample>;
+/// In place of a sample that was taken but never arrived.
+struct LostSample {};
+
+using SensorValue = std::variant<ImuSample, MagSample, PressureSample, LostSample>;
 
 /// One measuring channel of the ball. Sample k is a pure function of (parameters, stream, truth up to its due
 /// time plus one physics step) and of the samples before it.
@@ -35,10 +39,13 @@ class Sensor {
  public:
   virtual ~Sensor() = default;
   virtual Rate rate() const = 0;
-  /// True time at which sample k (0, 1, ...) is complete. Interval sensors: SampleTime(k + 1); point sensors:
-  /// SampleTime(k).
+  /// True time at which sample k (0, 1, ...) is complete and stamped. Interval sensors: SampleTime(k + 1);
+  /// point sensors: SampleTime(k); both beside it where sampling scatters.
   virtual TrueTime DueTime(std::int64_t k) const = 0;
-  /// Called once per k, in order, when the window reaches at least one step past DueTime(k).
+  /// How far before and behind DueTime(k) the truth of sample k may lie.
+  virtual Duration history() const { return SampleOffset(1, rate()); }
+  virtual Duration lookahead() const { return Duration(0); }
+  /// Called once per k, in order, when the window reaches at least one step past DueTime(k) + lookahead().
   virtual SensorValue Sample(std::int64_t k, const TruthWindow& window) = 0;
   /// Pose of the sensor frame in the ball.
   virtual Pose X_BS() const = 0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "estimator/allan.h"
 #include "estimator/filter_kind.h"
 #include "estimator/leak_locator.h"
 
@@ -101,6 +102,17 @@ void BM_AudioBlock(benchmark::State& state, const LocatorKind& kind) {
   state.counters["x_real_time"] =
       benchmark::Counter(static_cast<double>(n) * kBlock / kAudioRate_Hz, benchmark::Counter::kIsRate);
 }
+
+/// The record of the thesis: 882,472 samples of one axis, 93 clusters of the default grid, every overlap.
+void BM_AllanRecord(benchmark::State& state) {
+  const RandomStream random(1, "allan", 0);
+  std::vector<double> rate(882472);
+  for (std::size_t k = 0; k < rate.size(); ++k) rate[k] = random.Normals(k, 0)[0];
+  std::size_t clusters = 0;
+  for (auto _ : state) clusters = CalcAllanVariance(rate).size();
+  state.counters["clusters"] = static_cast<double>(clusters);
+}
+BENCHMARK(BM_AllanRecord)->Unit(benchmark::kMillisecond);
 
 const int kRegistered = [] {
   for (const FilterKind& kind : FilterKinds()) {

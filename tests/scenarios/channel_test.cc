@@ -145,7 +145,7 @@ std::vector<std::int32_t> ListenFor(const Scenario& scenario, const std::vector<
   for (const sim::ContactEvent& blow : blows) hydrophone->Hear(blow);
   std::vector<std::int32_t> counts;
   for (int block = 0; block < 10; ++block) {
-    const auto& audio = std::get<AudioBlock>(hydrophone->Take(window).value);
+    const auto& audio = std::get<AudioBlock>(hydrophone->Take(window)->value);
     counts.insert(counts.end(), audio.counts.begin(), audio.counts.end());
   }
   return counts;

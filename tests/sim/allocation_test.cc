@@ -12,6 +12,7 @@
 #include "sim/motion.h"
 #include "sim/network/simulation.h"
 #include "tests/support/features.h"
+#include "tests/support/imu_scene.h"
 #include "tests/support/networks.h"
 #include "tests/support/pipes.h"
 
@@ -72,6 +73,27 @@ TEST(BallAtFeature, StepsOverEveryKindWithoutAllocating) {
   while (world.state().X_LB.p.x() < 4 && Seconds(world.state().time) < 60) world.Step();
   EXPECT_EQ(allocations - before, 0);
   EXPECT_GE(world.state().X_LB.p.x(), 4);
+}
+
+TEST(Imu, SamplesWithoutAllocating) {
+  for (const char* digital : {"none", "boxcar", "low_pass_2"}) {
+    const auto imu = testing::MakeImu({{"increments", true},
+                                       {"gyro.filter.digital", std::string(digital)},
+                                       {"gyro.noise_rad_s_sqrtHz", 1e-3},
+                                       {"gyro.bias_instability_rad_s", 1e-3},
+                                       {"gyro.quantisation_rad", 1e-6},
+                                       {"accel.gauss_markov_sd_m_s2", 1e-3},
+                                       {"sampling.jitter_s", 1e-4},
+                                       {"sampling.loss_probability", 0.1},
+                                       {"sampling.duplicate_probability", 0.1}});
+    long before = 0;
+    testing::Play(testing::Spinning({0, 20, 1}), *imu, Rate(1000), 400,
+                  [&](std::int64_t k, const auto&, auto&) {
+                    if (k == 0) before = allocations;
+                  });
+    EXPECT_GT(before, 0) << "the counter counts";
+    EXPECT_EQ(allocations - before, 0) << digital;
+  }
 }
 
 TEST(HydraulicSolver, SolvesWithoutAllocating) {

@@ -39,18 +39,35 @@ double MeanAllanVariance(const std::array<std::vector<double>, 3>& axes, std::si
   return (CalcAllanVariance(axes[0], m) + CalcAllanVariance(axes[1], m) + CalcAllanVariance(axes[2], m)) / 3;
 }
 
-/// Allan variance at m samples of a stationary Gauss-Markov sequence with r(n) = variance decay^n, summed
-/// term by term: Var(mean of m) - Cov(means of neighbouring m).
-double GaussMarkovAllanVariance(double variance, double decay, std::size_t m) {
+/// Allan variance at m samples of a stationary sequence with autocovariance r(n), summed term by term:
+/// Var(mean of m) - Cov(means of neighbouring m).
+template <class Autocovariance>
+double StationaryAllanVariance(std::size_t m, const Autocovariance& r) {
   const double M = static_cast<double>(m);
-  double within = variance * M, between = 0, r = variance;
+  double within = r(0) * M, between = 0;
   for (std::size_t n = 1; n < 2 * m; ++n) {
-    r *= decay;
     const double N = static_cast<double>(n);
-    if (n < m) within += 2 * (M - N) * r;
-    between += (n <= m ? N : 2 * M - N) * r;
+    if (n < m) within += 2 * (M - N) * r(n);
+    between += (n <= m ? N : 2 * M - N) * r(n);
   }
   return (within - between) / (M * M);
+}
+
+/// Of a Gauss-Markov sequence r(n) = variance decay^n.
+double GaussMarkovAllanVariance(double variance, double decay, std::size_t m) {
+  const double rate = std::log(decay);
+  return StationaryAllanVariance(
+      m, [&](std::size_t n) { return variance * std::exp(rate * static_cast<double>(n)); });
+}
+
+/// Of one that moves every `hold` samples by `decay`: seen from a random sample, r falls along chords.
+double HeldAllanVariance(const GaussMarkov& process, std::size_t m) {
+  const auto hold = static_cast<std::size_t>(process.hold);
+  const double rate = std::log(process.decay);
+  return process.sd * process.sd * StationaryAllanVariance(m, [&](std::size_t n) {
+           const double part = static_cast<double>(n % hold) / static_cast<double>(hold);
+           return std::exp(rate * static_cast<double>(n / hold)) * (1 - part * (1 - process.decay));
+         });
 }
 
 TEST(ImuError, WhiteNoiseHasTheSdPerSampleAndTheAllanDeviationOfItsDensity) {
@@ -94,8 +111,26 @@ TEST(ImuError, BiasInstabilityPolesAddUpToTheFlatAllanDeviationOfFlickerNoise) {
   const double flicker = 2 * std::numbers::ln2 / std::numbers::pi * 9;  // (0.664 B)^2, facts 4.2
   for (const std::size_t m : {30, 100, 1000, 10'000, 100'000}) {        // 0.3 s to 1000 s
     double sum = 0;
-    for (const double decay : c.pole_decay) sum += GaussMarkovAllanVariance(c.pole_sd * c.pole_sd, decay, m);
+    for (const GaussMarkov& pole : c.poles) sum += HeldAllanVariance(pole, m);
     EXPECT_NEAR(std::sqrt(sum / flicker), 1, 0.015) << m;
+  }
+}
+
+TEST(ImuError, PolesThatMoveInStepsKeepTheAllanVarianceOfThoseThatMoveWithEverySample) {
+  TriadErrorParams p;
+  p.bias_instability = 3;
+  for (const double hertz : {100.0, 400.0}) {
+    const TriadErrorCoefficients c = MakeCoefficients(p, Rate(hertz), MakeStream());
+    EXPECT_GT(c.poles.back().hold, 1'000'000 / 16 * hertz / 100);
+    for (const std::size_t m : {1, 3, 10, 100, 1000, 10'000}) {
+      double held = 0, moving = 0, T = 1e-2;
+      for (const GaussMarkov& pole : c.poles) {
+        held += HeldAllanVariance(pole, m);
+        moving += GaussMarkovAllanVariance(c.pole_sd * c.pole_sd, std::exp(-1 / hertz / T), m);
+        T *= 10;
+      }
+      EXPECT_NEAR(std::sqrt(held / moving), 1, 1e-3) << hertz << " Hz, " << m;
+    }
   }
 }
 

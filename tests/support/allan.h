@@ -30,7 +30,7 @@ inline double CalcEdfWhite(std::size_t n, std::size_t cluster) {
 }
 inline double CalcEdfFlicker(std::size_t n, std::size_t cluster) {
   const double N = static_cast<double>(n + 1), m = static_cast<double>(cluster);
-  return cluster == 1 ? 2 * (N - 2) / (2.3 * N - 4.9) : 5 * N * N / (4 * m * (N + 3 * m));
+  return cluster == 1 ? 2 * (N - 2) * (N - 2) / (2.3 * N - 4.9) : 5 * N * N / (4 * m * (N + 3 * m));
 }
 inline double CalcEdfRandomWalk(std::size_t n, std::size_t cluster) {
   const double N = static_cast<double>(n + 1), m = static_cast<double>(cluster);

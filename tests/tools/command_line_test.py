@@ -125,10 +125,36 @@ class CommandLine(unittest.TestCase):
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
 
     def test_every_command_has_help(self):
-        for command in ([], ["run"], ["check"], ["estimate"], ["scenario"], ["scenario", "new"], ["network"]):
+        for command in ([], ["run"], ["check"], ["estimate"], ["scenario"], ["scenario", "new"], ["network"],
+                        ["simulate-static"], ["allan"], ["convert-units"]):
             done = piperun(*command, "--help")
             self.assertEqual(done.returncode, 0)
             self.assertIn("Usage", done.stdout)
+
+    def test_simulate_static_records_hours(self):
+        board = self.folder / "board.yaml"
+        board.write_text("sensors: {imu0: {kind: imu, rate_Hz: 200, gyro: {noise_deg_s_sqrtHz: 0.01}}}\n")
+        done = piperun("simulate-static", board, "--duration", "0.1 h", "--rate", 100, "--out", self.out, "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(done.stdout), {"imu0": {"samples": 36000, "lost": 0}})
+        self.assertEqual(len((self.out / "mav0/imu0/data.csv").read_text().splitlines()), 36001)
+        self.assertEqual(json.loads((self.out / "run.json").read_text())["duration_s"], 360)
+
+    def test_simulate_static_takes_presets(self):
+        done = piperun("simulate-static", "bmi088", "--duration", "10s", "--out", self.out, "--json")
+        self.assertEqual(json.loads(done.stdout), {"imu0": {"samples": 2000, "lost": 0}}, done.stderr)
+        again = self.folder / "again"
+        done = piperun("simulate-static", self.out / "scenario.yaml", "--duration", "10s", "--out", again)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for name in ("scenario.yaml", "mav0/imu0/data.csv"):
+            self.assertEqual((self.out / name).read_bytes(), (again / name).read_bytes(), name)
+
+    def test_simulate_static_refuses_what_is_no_duration(self):
+        for duration in ("h", "-1s", "2 weeks", "0", "400d"):
+            done = piperun("simulate-static", self.scenario(), "--duration=" + duration, "--out", self.out)
+            self.assertEqual(done.returncode, 2, duration)
+            self.assertIn("--duration", done.stderr)
+            self.assertFalse(self.out.exists())
 
     def test_scenario_commands(self):
         self.assertIn("quickstart", piperun("scenario", "list").stdout)
@@ -297,6 +323,69 @@ class CommandLine(unittest.TestCase):
         self.assertFalse((self.folder / "replayed").exists())
         done = piperun("estimate", self.out, "--out", self.folder / "replayed", "--estimators", "quaternion_efk")
         self.assertIn("did you mean 'quaternion_ekf'?", done.stderr)
+
+    # ---- noise of a sensor at rest
+
+    def allan(self, *arguments, rows=20000, change=None, unit="deg/s"):
+        """A gyroscope of 0.1 deg/s white noise at 100 Hz, N = 0.01 deg/s/sqrt(Hz); `change(k, value)` on top."""
+        noise = random.Random(3)
+        lines = ["t,w"]
+        for k in range(rows):
+            value = noise.gauss(0, 0.1)
+            lines.append(f"{k / 100:.2f},{change(k, value) if change else value}")
+        path = self.folder / "rest.csv"
+        path.write_text("\n".join(lines) + "\n")
+        return piperun("allan", path, "--columns", "gyro=w", "--unit", "gyro=" + unit, *arguments)
+
+    def test_allan_finds_the_noise_that_was_put_in(self):
+        files = [self.folder / name for name in ("a.json", "imu.yaml", "a.svg")]
+        done = self.allan("--json", "--json-file", files[0], "--preset", files[1], "--svg", files[2])
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(done.stdout), json.loads(files[0].read_text()))
+        terms = json.loads(done.stdout)["channels"][0]["terms"]
+        # sd of N from 20,000 samples is below 1 %
+        self.assertAlmostEqual(math.degrees(terms["N"]["value"]) / 0.01, 1, delta=0.04)
+        self.assertIsNone(terms["K"]["value"])
+        self.assertIn("not identifiable from this record", self.allan().stdout)
+        done = piperun("simulate-static", files[1], "--duration", "20s", "--out", self.out, "--json")
+        self.assertEqual(json.loads(done.stdout), {"imu0": {"samples": 2000, "lost": 0}}, done.stderr)
+        self.assertIn("<svg", files[2].read_text())
+        self.assertEqual(self.allan("--quiet").stdout, "")
+
+    def test_allan_says_what_is_wrong_with_a_record(self):
+        done = self.allan(change=lambda k, value: value + (5 if k > 9000 else 0))
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("not at rest", done.stderr)
+        done = self.allan(change=lambda k, value: "nan" if k == 77 else "?" if k == 99 else value)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("1 rows with an empty, nan or infinite value", done.stdout)
+        self.assertIn("rest.csv:101", done.stdout)
+        for unit, part in [("dge", "'dge' is not a known unit"), ("g", "rad/s")]:
+            done = self.allan(rows=2000, unit=unit)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(part, done.stderr)
+        for arguments, rows, parts in [(("--unit", "gyro=rad/s"), 2000, ["--unit", "given twice"]),
+                                       (("--unit", "accel=g"), 2000, ["--unit", "no 'accel'"]),
+                                       (("--time-column", "x"), 2000, ["--time-column", "'x'"]),
+                                       (("--kalibr", self.folder / "k"), 2000, ["--kalibr", "accel"]),
+                                       (("--rate", "-1"), 2000, ["--rate"]), ((), 10, ["10 samples"])]:
+            done = self.allan(*arguments, rows=rows)
+            self.assertEqual(done.returncode, 2, (arguments, done.stdout))
+            for part in parts:
+                self.assertIn(part, done.stderr)
+        self.assertEqual(piperun("allan", self.folder / "none.csv").returncode, 2)
+        self.assertFalse((self.folder / "k").exists())
+
+    def test_units_are_converted(self):
+        done = piperun("convert-units", "0.15", "deg/sqrt(h)", "--json")
+        self.assertAlmostEqual(json.loads(done.stdout)["value"], math.radians(0.15) / 60, 15)
+        done = piperun("convert-units", "1", "LSB", "--range", "2000deg/s", "--bits", "16", "--json")
+        self.assertAlmostEqual(json.loads(done.stdout)["value"], math.radians(4000) / 65536, 15)
+        for arguments, part in [(("1", "furlong"), "'furlong'"), (("x", "m"), "'x'"), (("1", "LSB"), "--range"),
+                                (("1", "LSB", "--range", "2g"), "--bits")]:
+            done = piperun("convert-units", *arguments)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(part, done.stderr)
 
     # ---- networks
 

@@ -17,11 +17,14 @@ struct Display {
 extern std::atomic<bool> stop_requested;
 
 /// Each adds its sub-command; when the user called it, its function runs and sets the exit code.
+void AddAllanCommand(CLI::App& app, Display& display, int& exit_code);
+void AddConvertUnitsCommand(CLI::App& app, Display& display, int& exit_code);
 void AddRunCommand(CLI::App& app, Display& display, int& exit_code);
 void AddCheckCommand(CLI::App& app, Display& display, int& exit_code);
 void AddEstimateCommand(CLI::App& app, Display& display, int& exit_code);
 void AddNetworkCommand(CLI::App& app, Display& display, int& exit_code);
 void AddReproduceCommand(CLI::App& app, Display& display, int& exit_code);
 void AddScenarioCommand(CLI::App& app, Display& display, int& exit_code);
+void AddSimulateStaticCommand(CLI::App& app, Display& display, int& exit_code);
 
 }  // namespace piperun::tools

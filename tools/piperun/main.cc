@@ -39,12 +39,15 @@ int RunApp(int argc, char** argv) {
   app.add_flag("-q,--quiet", display.quiet, "Print errors only");
   app.add_flag("--json", display.json, "Print results as JSON");
   int exit_code = kOk;
+  AddAllanCommand(app, display, exit_code);
+  AddConvertUnitsCommand(app, display, exit_code);
   AddRunCommand(app, display, exit_code);
   AddCheckCommand(app, display, exit_code);
   AddEstimateCommand(app, display, exit_code);
   AddNetworkCommand(app, display, exit_code);
   AddReproduceCommand(app, display, exit_code);
   AddScenarioCommand(app, display, exit_code);
+  AddSimulateStaticCommand(app, display, exit_code);
   app.footer("Exit codes: 0 ok, 1 the run or a check failed, 2 wrong usage or input, 130 interrupted.");
   try {
     app.parse(argc, argv);

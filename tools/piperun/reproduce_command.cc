@@ -18,6 +18,7 @@ struct ReproduceArguments {
   double size = 1;
   int jobs = 0;
   std::uint64_t seed = 1;
+  std::string out;
 };
 
 const scenarios::Reproduction& FindReproduction(const std::string& name) {
@@ -64,7 +65,10 @@ int Reproduce(const ReproduceArguments& arguments, const Display& display) {
     return kOk;
   }
   const scenarios::Reproduction& reproduction = FindReproduction(arguments.name);
-  scenarios::ReproduceOptions options{arguments.size, arguments.jobs, arguments.seed, &stop_requested, {}};
+  if (!arguments.out.empty() && !reproduction.draws)
+    throw InputError("the study '" + arguments.name + "' draws nothing", "--out");
+  scenarios::ReproduceOptions options{arguments.size, arguments.jobs,  arguments.seed,
+                                      arguments.out,  &stop_requested, {}};
   scenarios::ReproduceReport report;
   {
     ProgressBar bar(arguments.name, !display.quiet && !display.json);
@@ -90,6 +94,7 @@ void AddReproduceCommand(CLI::App& app, Display& display, int& exit_code) {
       ->check(CLI::Range(1e-4, 100.0));
   command->add_option("--jobs", arguments->jobs, "Threads (0: all cores)")->check(CLI::Range(0, 1024));
   command->add_option("--seed", arguments->seed, "Seed of everything drawn");
+  command->add_option("-o,--out", arguments->out, "Folder for the plots of a study that draws some");
   command->callback([arguments, &display, &exit_code] { exit_code = Reproduce(*arguments, display); });
 }
 
