@@ -47,6 +47,12 @@ struct PressureSample {
   double pressure_Pa = 0;
 };
 
+/// Temperature of the sensor at an instant.
+struct TemperatureSample {
+  RobotTime stamp{};
+  double temperature_C = 0;
+};
+
 /// A run of hydrophone samples, stamped at the last one. The pressure is counts * scale_Pa.
 struct AudioBlock {
   RobotTime stamp{};
@@ -59,7 +65,7 @@ struct AudioBlock {
 /// counts are only valid while the measurement is being handed over.
 struct Measurement {
   int channel = 0;
-  std::variant<ImuSample, MagSample, PressureSample, AudioBlock> value;
+  std::variant<ImuSample, MagSample, PressureSample, TemperatureSample, AudioBlock> value;
 };
 
 inline RobotTime Stamp(const Measurement& m) {

@@ -18,7 +18,8 @@ struct WallMaterial {
   double loss_factor = 0;  ///< effective: wall, lining, joints, deposits
   double poisson_ratio = 0;
   double density_kg_m3 = 0;
-  double roughness_m = 0;  ///< equivalent sand-grain roughness of the bore
+  double roughness_m = 0;            ///< equivalent sand-grain roughness of the bore
+  double relative_permeability = 1;  ///< mu_r in a field as weak as the earth's; 1: not magnetic
 };
 
 struct NodeSpec {

@@ -35,6 +35,9 @@ void BuildWay(const Scenario& scenario, Assembly& assembly) {
   WallFeatureList list = MakeWallFeatures(scenario, *assembly.bore);
   assembly.bore->SetFeatures(std::move(list.features));
   assembly.wall_features = std::move(list.labels);
+  for (const WallFeatureLabel& label : assembly.wall_features) {
+    if (label.kind == "joint") assembly.stick_joints.push_back({label.pipe, label.s_m});
+  }
 }
 
 void BuildScene(const Scenario& scenario, Assembly& assembly) {
@@ -88,22 +91,33 @@ void BuildMotion(const Scenario& scenario, Assembly& assembly) {
   }
 }
 
+sim::SensorContext MakeSensorContext(const SensorEntry& entry, const Scenario& scenario,
+                                     const Assembly& assembly) {
+  const auto seed = static_cast<std::uint64_t>(scenario.seed), run = static_cast<std::uint64_t>(scenario.run);
+  return {.random = RandomStream(seed, entry.name, run),
+          .clock = assembly.clock,
+          .gravity_W = {0, 0, -scenario.gravity_m_s2},
+          .truth_rate = assembly.motion->rate(),
+          .water_temperature_C = scenario.water.temperature_C,
+          .water_density_kg_m3 = assembly.water.density_kg_m3,
+          .network = assembly.network(),
+          .joints = assembly.stick_joints,
+          .seed = seed,
+          .run = run};
+}
+
 std::unique_ptr<Channel> MakeChannel(int index, const SensorEntry& entry, const Scenario& scenario,
                                      const Assembly& assembly) {
-  const RandomStream random(static_cast<std::uint64_t>(scenario.seed), entry.name,
-                            static_cast<std::uint64_t>(scenario.run));
+  const sim::SensorContext context = MakeSensorContext(entry, scenario, assembly);
   if (const auto* hydrophone = dynamic_cast<const acoustics::HydrophoneParams*>(&entry.kind.params())) {
     if (!assembly.pipeline) {
       throw InputError("a hydrophone needs a pipe, and this scenario has no network");
     }
-    return std::make_unique<HydrophoneChannel>(index, *hydrophone, assembly.scene, random, assembly.clock,
-                                               *assembly.network());
+    return std::make_unique<HydrophoneChannel>(index, *hydrophone, assembly.scene, context.random,
+                                               assembly.clock, *assembly.network());
   }
-  const Rate truth_rate = assembly.motion->rate();
-  const sim::SensorContext context{
-      random, assembly.clock, {0, 0, -scenario.gravity_m_s2}, truth_rate, scenario.water.temperature_C};
   auto sensor = FindKind(sim::SensorKinds(), entry.kind.kind()).make(entry.kind.params(), context);
-  return std::make_unique<SensorChannel>(index, std::move(sensor), truth_rate);
+  return std::make_unique<SensorChannel>(index, std::move(sensor), context.truth_rate);
 }
 
 void BuildChannels(const Scenario& scenario, Assembly& assembly) {

@@ -13,6 +13,7 @@
 #include "scenarios/scenario.h"
 #include "scenarios/wall_feature_list.h"
 #include "sim/motion.h"
+#include "sim/pipe_magnetism.h"
 
 namespace piperun::scenarios {
 
@@ -23,6 +24,7 @@ struct Assembly {
   std::optional<Route> plan;                    ///< the way the crew expects
   std::optional<sim::Bore> bore;                ///< what is open to the ball
   std::vector<WallFeatureLabel> wall_features;  ///< of the bore; a contact's `feature` indexes them
+  std::vector<sim::StickJoint> stick_joints;    ///< those among the wall features
   acoustics::AcousticScene scene;
   ClockModel clock;
   std::unique_ptr<sim::Motion> motion;

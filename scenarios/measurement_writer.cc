@@ -108,6 +108,16 @@ class PressureWriter : public CsvWriter {
   }
 };
 
+class TemperatureWriter : public CsvWriter {
+ public:
+  TemperatureWriter(const SensorEntry& entry, const Pose& X_BS, const std::filesystem::path& folder)
+      : CsvWriter(entry, X_BS, folder, kTemperatureHeader) {}
+  void Write(const Measurement& measurement) override {
+    const auto& sample = std::get<TemperatureSample>(measurement.value);
+    CsvRow(data_) << Nanoseconds(sample.stamp) << sample.temperature_C << kEndOfRow;
+  }
+};
+
 AudioDescription Describe(const acoustics::HydrophoneParams& params, const RecordOptions& options) {
   AudioDescription d;
   d.file = "audio." + options.audio_format;
@@ -175,6 +185,7 @@ std::unique_ptr<MeasurementWriter> MakeMeasurementWriter(const SensorEntry& entr
   if (records == "imu") return std::make_unique<ImuWriter>(entry, X_BS, folder);
   if (records == "magnetometer") return std::make_unique<MagWriter>(entry, X_BS, folder);
   if (records == "pressure") return std::make_unique<PressureWriter>(entry, X_BS, folder);
+  if (records == "temperature") return std::make_unique<TemperatureWriter>(entry, X_BS, folder);
   Demand(records == "audio", "every sensor kind records something that can be written");
   const auto& params = dynamic_cast<const acoustics::HydrophoneParams&>(entry.kind.params());
   return std::make_unique<AudioChannelWriter>(entry, params, options, folder);

@@ -10,8 +10,8 @@ namespace {
 
 WallMaterial MakeMaterial(const PipeEntry& entry) {
   const WallParams& wall = entry.wall;
-  return {entry.material,     wall.young_modulus_Pa, wall.loss_factor,
-          wall.poisson_ratio, wall.density_kg_m3,    wall.roughness_m};
+  return {entry.material,     wall.young_modulus_Pa, wall.loss_factor,          wall.poisson_ratio,
+          wall.density_kg_m3, wall.roughness_m,      wall.relative_permeability};
 }
 
 PipeSpec MakeSpec(const PipeEntry& entry) {

@@ -154,6 +154,20 @@ class PressureLog : public CsvLog {
   }
 };
 
+class TemperatureLog : public CsvLog {
+ public:
+  TemperatureLog(int channel, const fs::path& folder) : CsvLog(channel, folder, kTemperatureHeader) {}
+
+ protected:
+  bool Read() override {
+    std::array<double, 1> v{};
+    std::int64_t stamp = 0;
+    if (!data_.Next(stamp, v)) return false;
+    measurement_.value = TemperatureSample{ToStamp(stamp), v[0]};
+    return true;
+  }
+};
+
 AudioDescription LoadDescription(const fs::path& folder) {
   const fs::path path = folder / "sensor.yaml";
   AudioDescription description;
@@ -201,6 +215,7 @@ std::unique_ptr<ChannelLog> OpenLog(int channel, const RecordedChannel& recorded
   if (recorded.type == "imu") return std::make_unique<ImuLog>(channel, folder);
   if (recorded.type == "magnetometer") return std::make_unique<MagLog>(channel, folder);
   if (recorded.type == "pressure") return std::make_unique<PressureLog>(channel, folder);
+  if (recorded.type == "temperature") return std::make_unique<TemperatureLog>(channel, folder);
   return std::make_unique<AudioLog>(channel, folder);
 }
 

@@ -58,6 +58,8 @@ void WallParams::Visit(ParamVisitor& v) {
   v.Number({"density_kg_m3", "Density of the wall."}, Range::Positive(), density_kg_m3);
   v.Number({"roughness_m", "Equivalent sand-grain roughness of the bore."}, Range::NonNegative(),
            roughness_m);
+  v.Number({"relative_permeability", "Of the wall in a field as weak as the earth's; 1: not magnetic."},
+           {.min = 1, .max = 1e6}, relative_permeability);
 }
 
 void PipeEntry::Visit(ParamVisitor& v) {

@@ -35,6 +35,7 @@ struct WallParams {
   double poisson_ratio = 0;
   double density_kg_m3 = 0;
   double roughness_m = 0;
+  double relative_permeability = 1;
   void Visit(ParamVisitor& v);
 };
 

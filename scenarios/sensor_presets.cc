@@ -98,7 +98,7 @@ std::string WritePresetScenario(const SensorPreset& loaded, const std::string& p
   for (const KindEntry& section : loaded.sections) {
     const std::string channel = section.kind() == "magnetometer" ? "mag0" : section.kind() + "0";
     text += "  " + channel + ": {kind: " + section.kind() + ", preset: " + Quoted(preset) +
-            (section.kind() == "imu" ? ", thermal: {initial_C: 25}}\n" : "}\n");
+            (section.kind() != "magnetometer" ? ", thermal: {initial_C: 25}}\n" : "}\n");
   }
   return text;
 }

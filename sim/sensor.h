@@ -3,13 +3,16 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/measurement.h"
+#include "base/network.h"
 #include "base/params.h"
 #include "base/random.h"
+#include "sim/pipe_magnetism.h"
 #include "sim/truth.h"
 
 namespace piperun::sim {
@@ -20,6 +23,14 @@ struct SensorContext {
   Vector3d gravity_W{0, 0, -9.80665};
   Rate truth_rate{1000};
   double water_temperature_C = 10;
+  double water_density_kg_m3 = 999.7;
+  /// The pipes, and the joints of their sticks as far as they are described. The caller's, and alive as long
+  /// as the sensor; null: no pipes.
+  const Network* network = nullptr;
+  std::span<const StickJoint> joints{};
+  /// For what sensors share (the field in a pipe) and draw under a name of its own.
+  std::uint64_t seed = 0;
+  std::uint64_t run = 0;
 };
 
 /// What an IMU's slowly varying errors add up to now; EuRoC ground truth carries it beside the pose.
@@ -31,7 +42,7 @@ struct ImuBias {
 /// In place of a sample that was taken but never arrived.
 struct LostSample {};
 
-using SensorValue = std::variant<ImuSample, MagSample, PressureSample, LostSample>;
+using SensorValue = std::variant<ImuSample, MagSample, PressureSample, TemperatureSample, LostSample>;
 
 /// One measuring channel of the ball. Sample k is a pure function of (parameters, stream, truth up to its due
 /// time plus one physics step) and of the samples before it.
@@ -56,7 +67,7 @@ class Sensor {
 struct SensorKind {
   std::string_view name;
   std::string_view doc;
-  std::string_view records;  ///< what its samples are: "imu", "magnetometer" or "pressure"
+  std::string_view records;  ///< what its samples are: "imu", "magnetometer", "pressure" or "temperature"
   std::unique_ptr<Params> (*make_params)();
   std::unique_ptr<Sensor> (*make)(const Params& params, const SensorContext& context);
 };

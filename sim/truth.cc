@@ -33,6 +33,7 @@ TruthState InterpolateStep(const TruthState& a, const TruthState& b, double x, d
   s.chainage_m = Mix(a.chainage_m, b.chainage_m, x);
   s.water_speed_m_s = Mix(a.water_speed_m_s, b.water_speed_m_s, x);
   s.pressure_Pa = Mix(a.pressure_Pa, b.pressure_Pa, x);
+  s.v_slip_W = Mix(a.v_slip_W, b.v_slip_W, x);
   return s;
 }
 

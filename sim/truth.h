@@ -31,7 +31,10 @@ struct TruthState {
   double chainage_m = 0;       ///< along the way taken
   double water_speed_m_s = 0;  ///< bulk velocity Q/A where the ball is, positive the way chainage rises
   double pressure_Pa = 0;      ///< gauge, static, at the ball's centre
-  bool contact = false;        ///< touching the wall
+  /// Velocity of the water less that of the ball's centre: the water as it would flow there without the ball.
+  /// Zero where no water is known.
+  Vector3d v_slip_W = Vector3d::Zero();
+  bool contact = false;  ///< touching the wall
 };
 
 /// The last few truth states, by step number, for sensors to sample from. Step k is at SampleTime(k, rate).

@@ -81,6 +81,7 @@ class QuaternionEkf final : public Estimator {
   void Take(const ImuSample& sample);
   void Take(const MagSample& sample);
   void Take(const PressureSample&) {}
+  void Take(const TemperatureSample&) {}
   void Take(const AudioBlock& block);
 
   void Start(const ImuSample& sample);

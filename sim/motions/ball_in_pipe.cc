@@ -179,6 +179,7 @@ class BallInPipe : public Motion {
     state_.chainage_m = way_.Chainage_m(ball.spot.s_m);
     state_.water_speed_m_s = leg.reversed ? -water_.bulk_speed_m_s : water_.bulk_speed_m_s;
     state_.pressure_Pa = water_.pressure_Pa;
+    state_.v_slip_W = water_.velocity_W - ball.v_WB_W;
     offset_m_ = (ball.X_LB.p - ball.spot.axis.p_W).norm();
     state_.contact =
         ball.normal_force_N > 0 ||

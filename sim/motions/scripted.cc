@@ -143,10 +143,13 @@ class ScriptedMotion final : public Motion {
     if (context_.flow) SetWater(piece);
   }
 
-  /// Speed along the route; static gauge pressure rho (|g| head + g . p).
+  /// Speed along the route, the bulk velocity's across the whole bore; static gauge pressure rho (|g| head +
+  /// g . p).
   void SetWater(const RoutePiece& piece) {
     const FlowPoint flow = context_.flow->Eval(state_.pipe, state_.s_m, state_.time);
     state_.water_speed_m_s = piece.reversed ? -flow.velocity_m_s : flow.velocity_m_s;
+    state_.v_slip_W =
+        flow.velocity_m_s * context_.network->pipe(state_.pipe).Eval(state_.s_m).tangent_W - state_.v_WB_W;
     state_.pressure_Pa = context_.water.density_kg_m3 *
                          (context_.gravity_W.norm() * flow.head_m + context_.gravity_W.dot(state_.X_WB.p));
   }

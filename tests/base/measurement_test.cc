@@ -13,6 +13,7 @@ TEST(Measurement, HasTheStampOfWhateverItHolds) {
   EXPECT_EQ(Stamp({0, ImuSample{.stamp = t}}), t);
   EXPECT_EQ(Stamp({1, MagSample{.stamp = t}}), t);
   EXPECT_EQ(Stamp({2, PressureSample{.stamp = t}}), t);
+  EXPECT_EQ(Stamp({2, TemperatureSample{.stamp = t}}), t);
   EXPECT_EQ(Stamp({3, AudioBlock{t, 16000, 1e-4, counts}}), t);
 }
 

@@ -52,7 +52,7 @@ TEST(Catalogue, WalksHaveThePrintedLengths) {
 }
 
 TEST(SensorOptions, EveryKindSaysWhatItRecords) {
-  const std::set<std::string_view> known{"imu", "magnetometer", "pressure", "audio"};
+  const std::set<std::string_view> known{"imu", "magnetometer", "pressure", "temperature", "audio"};
   for (const KindOption& option : SensorOptions()) EXPECT_TRUE(known.contains(option.records)) << option.name;
 }
 
@@ -75,7 +75,7 @@ TEST(Materials, AreReadFromTheLibrary) {
 TEST(Reference, NamesEveryKind) {
   const std::string text = WriteReference();
   for (const char* kind :
-       {"`ball_in_pipe`", "`scripted`", "`imu`", "`magnetometer`", "`pressure`", "`hydrophone`",
+       {"`ball_in_pipe`", "`scripted`", "`imu`", "`magnetometer`", "`pressure`", "`temperature`", "`hydrophone`",
         "`turbulent_jet`", "`quaternion_ekf`", "`mission.stuck_after_s`"}) {
     EXPECT_NE(text.find(kind), std::string::npos) << kind;
   }

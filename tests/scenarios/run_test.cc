@@ -114,12 +114,14 @@ TEST_F(SmallRun, OtherChannelsDoNotChangeWhenSensorsComeGoOrMove) {
   reordered.insert(reordered.find("sensors:\n") + 9, mag);
   std::string more = text;
   more.insert(more.find("sensors:\n") + 9,
-              "  a_second_imu: {kind: imu, rate_Hz: 333, gyro: {noise_deg_s_sqrtHz: 0.1}}\n");
+              "  a_second_imu: {kind: imu, rate_Hz: 333, gyro: {noise_deg_s_sqrtHz: 0.1}}\n"
+              "  thermometer: {kind: temperature, offset_sd_K: 0.5, noise_sd_K: 0.1}\n"
+              "  wall_port: {kind: pressure, port_mm: [30, 0, 0], dynamic: sphere, noise_sd_Pa: 3}\n");
   for (const std::string& variant : {without, reordered, more}) {
     const TemporaryFolder other;
     RunInto(ParseScenario(variant, "variant.yaml"), other / "run");
     for (const char* name : {"mav0/imu0/data.csv", "mav0/pressure0/data.csv", "mav0/hydrophone0/audio.wav",
-                             "mav0/mag0/data.csv", "truth/ball.csv"}) {
+                             "mav0/mag0/data.csv", "mav0/temperature0/data.csv", "truth/ball.csv"}) {
       if (!fs::exists(other / "run" / name)) continue;  // the removed one
       EXPECT_TRUE(FileText(Folder() / name) == FileText(other / "run" / name)) << name;
     }

@@ -33,6 +33,7 @@ sensors:
   imu0: {kind: imu, rate_Hz: 400, gyro: {noise_deg_s_sqrtHz: 0.01, bias_sd_deg_s: 0.05}, accel: {noise_ug_sqrtHz: 200}}
   mag0: {kind: magnetometer, rate_Hz: 50, noise_sd_uT: 0.3}
   pressure0: {kind: pressure, rate_Hz: 50, noise_sd_Pa: 100}
+  temperature0: {kind: temperature, rate_Hz: 4, offset_sd_K: 0.3, noise_sd_K: 0.05}
   hydrophone0: {kind: hydrophone, rate_Hz: 16000}
 estimators:
   ekf: {kind: quaternion_ekf, locator: {kind: matched_filter}}

@@ -198,7 +198,15 @@ TEST(Scripted, WaterIsThatOfTheRoute) {
   const double rho_g = scene.context.water.density_kg_m3 * 9.80665;
   EXPECT_NEAR(motion->state().pressure_Pa, rho_g * 38.5, 1e-6);
   EXPECT_NEAR(motion->state().water_speed_m_s, 0.01 / area, 1e-12);
-  while (motion->status() == MotionStatus::kRunning) motion->Step();
+  while (motion->status() == MotionStatus::kRunning) {
+    motion->Step();
+    const TruthState& s = motion->state();
+    const Vector3d water_W = s.v_slip_W + s.v_WB_W;  // along the way, in the reversed pipe too
+    ASSERT_NEAR(water_W.norm(), 0.01 / area, 1e-12);
+    if (s.v_WB_W.norm() > 0.1) {
+      ASSERT_NEAR(water_W.normalized().dot(s.v_WB_W.normalized()), 1, 1e-3);
+    }
+  }
   EXPECT_NEAR(motion->state().pressure_Pa, rho_g * 35.5, 1e-6);
   EXPECT_NEAR(motion->state().water_speed_m_s, 0.01 / area,
               1e-12);  // still along the route in the reversed pipe
