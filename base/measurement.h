@@ -53,6 +53,13 @@ struct TemperatureSample {
   double temperature_C = 0;
 };
 
+/// A pass of the ball below a receiver above ground, from the log that the crew reads out after the run.
+struct MarkerPass {
+  RobotTime stamp{};                ///< by the receiver's clock, compared with the ball's when it was put in
+  int receiver = 0;                 ///< by the order in which they were set up
+  Vector3d p_W = Vector3d::Zero();  ///< of the receiver, as surveyed
+};
+
 /// A run of hydrophone samples, stamped at the last one. The pressure is counts * scale_Pa.
 struct AudioBlock {
   RobotTime stamp{};
@@ -65,8 +72,11 @@ struct AudioBlock {
 /// counts are only valid while the measurement is being handed over.
 struct Measurement {
   int channel = 0;
-  std::variant<ImuSample, MagSample, PressureSample, TemperatureSample, AudioBlock> value;
+  std::variant<ImuSample, MagSample, PressureSample, TemperatureSample, MarkerPass, AudioBlock> value;
 };
+
+/// True of what is only known after the run. It comes behind everything else, its stamps going back.
+inline bool IsReadOutLater(const Measurement& m) { return std::holds_alternative<MarkerPass>(m.value); }
 
 inline RobotTime Stamp(const Measurement& m) {
   return std::visit([](const auto& v) { return v.stamp; }, m.value);

@@ -28,6 +28,14 @@ const Measurement* SensorChannel::Take(const sim::TruthWindow& window) {
   return std::visit(Deliver{measurement_}, sensor_->Sample(next_++, window)) ? &measurement_ : nullptr;
 }
 
+std::vector<Measurement> SensorChannel::ReadOut(const sim::TruthWindow& window) {
+  std::vector<Measurement> measurements;
+  for (const MarkerPass& pass : sensor_->ReadOut(window)) {
+    measurements.push_back({measurement_.channel, pass});
+  }
+  return measurements;
+}
+
 HydrophoneChannel::HydrophoneChannel(int index, const acoustics::HydrophoneParams& params,
                                      acoustics::AcousticScene scene, const RandomStream& random,
                                      const ClockModel& clock, const Network& network)

@@ -29,6 +29,8 @@ class Channel {
   virtual Duration history() const = 0;
   /// Takes the next measurement; valid until the next call. Null: it was lost on its way.
   virtual const Measurement* Take(const sim::TruthWindow& window) = 0;
+  /// What is only read out after the run; called once, behind the last Take().
+  virtual std::vector<Measurement> ReadOut(const sim::TruthWindow&) { return {}; }
 };
 
 /// A channel over one of sim's sensors. `index` becomes Measurement::channel.
@@ -39,6 +41,7 @@ class SensorChannel : public Channel {
   Duration lookahead() const override { return step_ + sensor_->lookahead(); }
   Duration history() const override { return sensor_->history(); }
   const Measurement* Take(const sim::TruthWindow& window) override;
+  std::vector<Measurement> ReadOut(const sim::TruthWindow& window) override;
   const sim::Sensor& sensor() const { return *sensor_; }
 
  private:

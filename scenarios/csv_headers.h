@@ -15,6 +15,7 @@ inline constexpr std::string_view kFlagsHeader = "#timestamp [ns],saturated [],d
 inline constexpr std::string_view kMagHeader = "#timestamp [ns],m_S_x [T],m_S_y [T],m_S_z [T]\n";
 inline constexpr std::string_view kPressureHeader = "#timestamp [ns],pressure [Pa]\n";
 inline constexpr std::string_view kTemperatureHeader = "#timestamp [ns],temperature [C]\n";
+inline constexpr std::string_view kMarkerHeader = "#timestamp [ns],receiver [],x [m],y [m],z [m]\n";
 inline constexpr std::string_view kBallHeader =
     "#timestamp [ns],pipe,s [m],chainage [m],p_WB_x [m],p_WB_y [m],p_WB_z [m],q_WB_w [],q_WB_x [],q_WB_y [],"
     "q_WB_z [],v_WB_x [m s^-1],v_WB_y [m s^-1],v_WB_z [m s^-1],w_WB_B_x [rad s^-1],w_WB_B_y [rad s^-1],"

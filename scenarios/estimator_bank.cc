@@ -127,7 +127,11 @@ void EstimatorBank::SampleTracksBefore(RobotTime t) {
 }
 
 void EstimatorBank::Ingest(const Measurement& measurement) {
-  const RobotTime stamp = Stamp(measurement);
+  if (!IsReadOutLater(measurement)) FollowTime(Stamp(measurement));
+  for (const auto& member : members_) member->Ingest(measurement);
+}
+
+void EstimatorBank::FollowTime(RobotTime stamp) {
   if (next_track_ && stamp - last_stamp_ > kLongestSilence) {
     throw InputError("the record jumps ahead by " + FormatNumber(Seconds(stamp - last_stamp_)) +
                      " s; allowed: up to one hour without any measurement");
@@ -135,7 +139,6 @@ void EstimatorBank::Ingest(const Measurement& measurement) {
   last_stamp_ = stamp;
   if (!next_track_) next_track_ = FirstSampleFrom(last_stamp_, track_rate_);
   SampleTracksBefore(last_stamp_);
-  for (const auto& member : members_) member->Ingest(measurement);
 }
 
 std::vector<EstimatorResult> EstimatorBank::Finish(const std::vector<TrueLeak>& leaks, double match_radius_m,

@@ -33,6 +33,7 @@ class EstimatorBank {
 
  private:
   struct Member;
+  void FollowTime(RobotTime stamp);
   void SampleTracksBefore(RobotTime t);
 
   Rate track_rate_;

@@ -118,6 +118,16 @@ class TemperatureWriter : public CsvWriter {
   }
 };
 
+class MarkerWriter : public CsvWriter {
+ public:
+  MarkerWriter(const SensorEntry& entry, const Pose& X_BS, const std::filesystem::path& folder)
+      : CsvWriter(entry, X_BS, folder, kMarkerHeader) {}
+  void Write(const Measurement& measurement) override {
+    const auto& pass = std::get<MarkerPass>(measurement.value);
+    CsvRow(data_) << Nanoseconds(pass.stamp) << std::int64_t{pass.receiver} << pass.p_W << kEndOfRow;
+  }
+};
+
 AudioDescription Describe(const acoustics::HydrophoneParams& params, const RecordOptions& options) {
   AudioDescription d;
   d.file = "audio." + options.audio_format;
@@ -186,6 +196,7 @@ std::unique_ptr<MeasurementWriter> MakeMeasurementWriter(const SensorEntry& entr
   if (records == "magnetometer") return std::make_unique<MagWriter>(entry, X_BS, folder);
   if (records == "pressure") return std::make_unique<PressureWriter>(entry, X_BS, folder);
   if (records == "temperature") return std::make_unique<TemperatureWriter>(entry, X_BS, folder);
+  if (records == "marker") return std::make_unique<MarkerWriter>(entry, X_BS, folder);
   Demand(records == "audio", "every sensor kind records something that can be written");
   const auto& params = dynamic_cast<const acoustics::HydrophoneParams&>(entry.kind.params());
   return std::make_unique<AudioChannelWriter>(entry, params, options, folder);

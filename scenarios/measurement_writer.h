@@ -9,8 +9,8 @@
 
 namespace piperun::scenarios {
 
-/// Writes one channel's record under mav0/NAME: data.csv (and increments.csv, flags.csv), or audio; sensor.yaml at the
-/// end.
+/// Writes one channel's record under mav0/NAME: data.csv (and increments.csv, flags.csv), or audio;
+/// sensor.yaml at the end.
 class MeasurementWriter {
  public:
   virtual ~MeasurementWriter() = default;

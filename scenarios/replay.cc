@@ -22,6 +22,7 @@ class ChannelLog {
   explicit ChannelLog(int channel) { measurement_.channel = channel; }
   virtual ~ChannelLog() = default;
   const Measurement& current() const { return measurement_; }
+  virtual bool may_be_empty() const { return false; }
   bool Advance() {
     const RobotTime before = Stamp(measurement_);
     if (!Read()) return false;
@@ -168,6 +169,22 @@ class TemperatureLog : public CsvLog {
   }
 };
 
+class MarkerLog : public CsvLog {
+ public:
+  MarkerLog(int channel, const fs::path& folder) : CsvLog(channel, folder, kMarkerHeader) {}
+  /// No ball may have come by.
+  bool may_be_empty() const override { return true; }
+
+ protected:
+  bool Read() override {
+    std::array<double, 4> v{};
+    std::int64_t stamp = 0;
+    if (!data_.Next(stamp, v)) return false;
+    measurement_.value = MarkerPass{ToStamp(stamp), static_cast<int>(v[0]), {v[1], v[2], v[3]}};
+    return true;
+  }
+};
+
 AudioDescription LoadDescription(const fs::path& folder) {
   const fs::path path = folder / "sensor.yaml";
   AudioDescription description;
@@ -215,8 +232,14 @@ std::unique_ptr<ChannelLog> OpenLog(int channel, const RecordedChannel& recorded
   if (recorded.type == "imu") return std::make_unique<ImuLog>(channel, folder);
   if (recorded.type == "magnetometer") return std::make_unique<MagLog>(channel, folder);
   if (recorded.type == "pressure") return std::make_unique<PressureLog>(channel, folder);
+  if (recorded.type == "marker") return std::make_unique<MarkerLog>(channel, folder);
   if (recorded.type == "temperature") return std::make_unique<TemperatureLog>(channel, folder);
   return std::make_unique<AudioLog>(channel, folder);
+}
+
+bool ComesBefore(const Measurement& a, const Measurement& b) {
+  if (IsReadOutLater(a) != IsReadOutLater(b)) return IsReadOutLater(b);
+  return Stamp(a) < Stamp(b);
 }
 
 }  // namespace
@@ -234,8 +257,11 @@ MeasurementLog::MeasurementLog(const fs::path& run_folder, const EstimatorInput&
     : impl_(std::make_unique<Impl>()) {
   for (std::size_t i = 0; i < input.channels.size(); ++i) {
     auto log = OpenLog(static_cast<int>(i), input.channels[i], run_folder / "mav0" / input.channels[i].name);
-    if (!log->Advance()) throw InputError("the record is empty", "", "mav0/" + input.channels[i].name);
-    impl_->open.push_back(std::move(log));
+    if (log->Advance()) {
+      impl_->open.push_back(std::move(log));
+    } else if (!log->may_be_empty()) {
+      throw InputError("the record is empty", "", "mav0/" + input.channels[i].name);
+    }
   }
 }
 
@@ -245,7 +271,7 @@ const Measurement* MeasurementLog::Next() {
   if (impl_->delivered && !impl_->delivered->Advance()) impl_->Drop(impl_->delivered);
   impl_->delivered = nullptr;
   for (const auto& log : impl_->open) {
-    if (!impl_->delivered || Stamp(log->current()) < Stamp(impl_->delivered->current()))
+    if (!impl_->delivered || ComesBefore(log->current(), impl_->delivered->current()))
       impl_->delivered = log.get();
   }
   return impl_->delivered ? &impl_->delivered->current() : nullptr;

@@ -108,6 +108,7 @@ class RunLoop {
       Push(motion.state());
     }
     Deliver(Duration(0));  // no collision can be told any more
+    DeliverReadOuts();
     truth_.WriteUntil(window_.latest_time(), window_);
   }
 
@@ -155,6 +156,20 @@ class RunLoop {
       if (!measurement) continue;
       writers_[i]->Write(*measurement);
       bank_.Ingest(*measurement);
+    }
+  }
+
+  /// By stamp and then channel name, as a replay merges them.
+  void DeliverReadOuts() {
+    std::vector<Measurement> all;
+    for (const auto& channel : assembly_.channels) {
+      for (Measurement& measurement : channel->ReadOut(window_)) all.push_back(std::move(measurement));
+    }
+    std::stable_sort(all.begin(), all.end(),
+                     [](const Measurement& a, const Measurement& b) { return Stamp(a) < Stamp(b); });
+    for (const Measurement& measurement : all) {
+      writers_[static_cast<std::size_t>(measurement.channel)]->Write(measurement);
+      bank_.Ingest(measurement);
     }
   }
 

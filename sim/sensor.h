@@ -58,6 +58,8 @@ class Sensor {
   virtual Duration lookahead() const { return Duration(0); }
   /// Called once per k, in order, when the window reaches at least one step past DueTime(k) + lookahead().
   virtual SensorValue Sample(std::int64_t k, const TruthWindow& window) = 0;
+  /// What is only read out after the run, by stamps; called once, behind the last Sample().
+  virtual std::vector<MarkerPass> ReadOut(const TruthWindow&) { return {}; }
   /// Pose of the sensor frame in the ball.
   virtual Pose X_BS() const = 0;
   /// True additive bias at the last sample; inertial sensors, and only they, have one.
@@ -67,7 +69,7 @@ class Sensor {
 struct SensorKind {
   std::string_view name;
   std::string_view doc;
-  std::string_view records;  ///< what its samples are: "imu", "magnetometer", "pressure" or "temperature"
+  std::string_view records;  ///< what its samples are: "imu", "magnetometer", "pressure", "temperature" or "marker"
   std::unique_ptr<Params> (*make_params)();
   std::unique_ptr<Sensor> (*make)(const Params& params, const SensorContext& context);
 };

@@ -82,6 +82,7 @@ class QuaternionEkf final : public Estimator {
   void Take(const MagSample& sample);
   void Take(const PressureSample&) {}
   void Take(const TemperatureSample&) {}
+  void Take(const MarkerPass&) {}
   void Take(const AudioBlock& block);
 
   void Start(const ImuSample& sample);
