@@ -107,8 +107,9 @@ class QuaternionEkf final : public Estimator {
   PositionFilter* position_;
   std::optional<InvertTrack> course_map_;
   std::unique_ptr<LeakLocator> locator_;
-  std::array<int, 4> channels_{-1, -1, -1, -1};  // listened to, by index in the variant
-  bool magnetic_ = false;                        // the heading has come from the magnetometer
+  /// Listened to, by index in the variant; -1: none yet.
+  std::array<int, std::variant_size_v<decltype(Measurement::value)>> channels_;
+  bool magnetic_ = false;  // the heading has come from the magnetometer
   bool started_ = false;
   NavState nav_;
   std::vector<LeakEstimate> no_leaks_;
@@ -122,6 +123,7 @@ QuaternionEkf::QuaternionEkf(const QuaternionEkfParams& params, const EstimatorS
       attitude_(MakeAttitude(params, start)),
       rest_(params.align_s, params.attitude.gyro_noise_rad_s_sqrtHz, params.attitude.gyro_bias_sd_rad_s),
       locator_(params.locator.Make(start_)) {
+  channels_.fill(-1);
   if (params.position == "rolling") {
     position_ = &odometer_.emplace(params.rolling, start_);
   } else {

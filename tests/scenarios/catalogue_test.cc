@@ -75,8 +75,8 @@ TEST(Materials, AreReadFromTheLibrary) {
 TEST(Reference, NamesEveryKind) {
   const std::string text = WriteReference();
   for (const char* kind :
-       {"`ball_in_pipe`", "`scripted`", "`imu`", "`magnetometer`", "`pressure`", "`temperature`", "`hydrophone`",
-        "`turbulent_jet`", "`quaternion_ekf`", "`mission.stuck_after_s`"}) {
+       {"`ball_in_pipe`", "`scripted`", "`imu`", "`magnetometer`", "`pressure`", "`temperature`",
+        "`hydrophone`", "`turbulent_jet`", "`quaternion_ekf`", "`mission.stuck_after_s`"}) {
     EXPECT_NE(text.find(kind), std::string::npos) << kind;
   }
 }

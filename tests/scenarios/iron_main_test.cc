@@ -98,7 +98,7 @@ TEST(Thermometer, IsWrittenAndReadBack) {
   const fs::path data = folder / "run/mav0/temperature0/data.csv";
   EXPECT_TRUE(FileText(data).starts_with("#timestamp [ns],temperature [C]\n"));
   const auto rows = ReadNumbers(data);
-  ASSERT_EQ(rows.size(), 13u);
+  ASSERT_EQ(rows.size(), 12u);  // the hydrophone hears 0.1 s ahead: the last one would be due at 3 s
   for (std::size_t k = 0; k < rows.size(); ++k) {
     EXPECT_EQ(rows[k][0] - rows[0][0], 2.5e8 * static_cast<double>(k));
     EXPECT_NEAR(rows[k][1], 8 + 12 * std::exp(-0.125 * static_cast<double>(k)), 1e-12);

@@ -320,6 +320,7 @@ TEST(BallInPipe, SteadyRollBalancesForcesAndTorques) {
   const double slip = mean.velocity * speed - v, pressure = 0.5 * rho * slip * slip;
   const double re = std::abs(slip) * 0.06 / nu;
   ASSERT_TRUE(slip > 0 && re > 100 && re < 1e4);
+  EXPECT_LT((motion->state().v_slip_W - Vector3d(slip, 0, 0)).norm(), 1e-6);
   double wall = 0.8;  // Kehlenbeck and Di Felice at the speed of the free sphere
   for (int i = 0; i < 100; ++i) {
     const double k = 0.041 * std::pow(re / wall, 0.524), l0 = (0.283 + 1.2 * k) / (1 + k);
