@@ -14,8 +14,8 @@ namespace piperun::sim::bullet {
 /// Bullet's sequential impulses for one body in front of walls that do not move, with resistance to rolling
 /// and spinning.
 ///
-/// Rows, their order and their arithmetic are those of btSequentialImpulseConstraintSolver, to the bit; a
-/// contact has one row along its normal n and two of friction across it, the first along the slip,
+/// Rows, their order and their arithmetic are those of btSequentialImpulseConstraintSolver; a contact has one
+/// row along its normal n and two of friction across it, the first along the slip,
 ///
 ///   J += (b - J k/dt - m_e (d . dv + (r x d) . dw)),  0 <= J along n,  |J| <= mu J_n across it,
 ///
