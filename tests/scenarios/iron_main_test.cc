@@ -103,7 +103,7 @@ TEST(Thermometer, IsWrittenAndReadBack) {
     EXPECT_EQ(rows[k][0] - rows[0][0], 2.5e8 * static_cast<double>(k));
     EXPECT_NEAR(rows[k][1], 8 + 12 * std::exp(-0.125 * static_cast<double>(k)), 1e-12);
   }
-  EXPECT_NE(FileText(folder / "run/mav0/temperature0/sensor.yaml").find("sensor_type: temperature"),
+  EXPECT_NE(FileText(folder / "run/mav0/temperature0/sensor.yaml").find("sensor_type: \"temperature\""),
             std::string::npos);
   EstimatorInput input = LoadEstimatorInput((folder / "run/estimator_input.yaml").string());
   MeasurementLog log(folder / "run", input);
