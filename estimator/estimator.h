@@ -65,7 +65,8 @@ struct SmoothedTrack {
 class Estimator {
  public:
   virtual ~Estimator() = default;
-  /// Measurements arrive in the order (stamp, channel name, row).
+  /// Measurements arrive in the order (stamp, channel name, row); those that are read out after the run
+  /// (IsReadOutLater) in that order behind all others. nav() is no longer asked for then.
   virtual void Ingest(const Measurement& measurement) = 0;
   virtual const NavState& nav() const = 0;
   /// Leaks found so far, in order of t_cpa.

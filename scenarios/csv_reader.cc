@@ -18,8 +18,8 @@ std::string_view TakeField(std::string_view& rest) {
 
 }  // namespace
 
-CsvReader::CsvReader(const std::filesystem::path& path, std::string_view header)
-    : path_(path), file_(path, std::ios::binary) {
+CsvReader::CsvReader(const std::filesystem::path& path, std::string_view header, StampOrder order)
+    : path_(path), order_(order), file_(path, std::ios::binary) {
   if (!file_) throw InputError("cannot read this file", "", path.string());
   while (!header.empty() && header.back() == '\n') header.remove_suffix(1);
   if (!ReadLine() || line_ != header) Refuse("the first line must be '" + std::string(header) + "'");
@@ -37,6 +37,13 @@ void CsvReader::Refuse(const std::string& problem) const {
   throw InputError(problem, "", path_.string() + ":" + std::to_string(line_number_));
 }
 
+void CsvReader::CheckOrder(std::int64_t stamp_ns) {
+  if (before_ns_ && order_ == StampOrder::kRise && stamp_ns <= *before_ns_)
+    Refuse("stamps must rise from row to row");
+  if (before_ns_ && stamp_ns < *before_ns_) Refuse("stamps must not fall from row to row");
+  before_ns_ = stamp_ns;
+}
+
 bool CsvReader::Next(std::int64_t& stamp_ns, std::span<double> values, std::string* text) {
   if (!ReadLine()) return false;
   std::string_view rest = line_;
@@ -44,8 +51,7 @@ bool CsvReader::Next(std::int64_t& stamp_ns, std::span<double> values, std::stri
   const auto [end, error] = std::from_chars(stamp.data(), stamp.data() + stamp.size(), stamp_ns);
   if (error != std::errc{} || end != stamp.data() + stamp.size())
     Refuse("the row does not begin with a stamp");
-  if (before_ns_ && stamp_ns <= *before_ns_) Refuse("stamps must rise from row to row");
-  before_ns_ = stamp_ns;
+  CheckOrder(stamp_ns);
   if (text) *text = TakeField(rest);
   for (double& value : values) {
     const auto number = ParseNumber(TakeField(rest));

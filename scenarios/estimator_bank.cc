@@ -127,7 +127,11 @@ void EstimatorBank::SampleTracksBefore(RobotTime t) {
 }
 
 void EstimatorBank::Ingest(const Measurement& measurement) {
-  if (!IsReadOutLater(measurement)) FollowTime(Stamp(measurement));
+  if (IsReadOutLater(measurement)) {
+    CompleteTracks();  // what a filter makes of it is not causal
+  } else {
+    FollowTime(Stamp(measurement));
+  }
   for (const auto& member : members_) member->Ingest(measurement);
 }
 
@@ -141,9 +145,11 @@ void EstimatorBank::FollowTime(RobotTime stamp) {
   SampleTracksBefore(last_stamp_);
 }
 
+void EstimatorBank::CompleteTracks() { SampleTracksBefore(last_stamp_ + Duration(1)); }
+
 std::vector<EstimatorResult> EstimatorBank::Finish(const std::vector<TrueLeak>& leaks, double match_radius_m,
                                                    const std::function<TruthAt()>& reopened_truth) {
-  SampleTracksBefore(last_stamp_ + Duration(1));
+  CompleteTracks();
   std::vector<EstimatorResult> results;
   for (const auto& member : members_) {
     const auto smoothed = member->estimator->Finish();

@@ -35,6 +35,7 @@ class EstimatorBank {
   struct Member;
   void FollowTime(RobotTime stamp);
   void SampleTracksBefore(RobotTime t);
+  void CompleteTracks();
 
   Rate track_rate_;
   std::optional<std::int64_t> next_track_;  ///< the grid begins with the first measurement

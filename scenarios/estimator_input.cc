@@ -150,8 +150,8 @@ void ToldEstimator::Visit(ParamVisitor& v) {
 }
 
 void RecordedChannel::Visit(ParamVisitor& v) {
-  static constexpr std::array<std::string_view, 5> kTypes{"imu", "magnetometer", "pressure", "temperature",
-                                                          "audio"};
+  static constexpr std::array<std::string_view, 6> kTypes{"imu",         "magnetometer", "pressure",
+                                                          "temperature", "marker",       "audio"};
   v.Text({"name", "Folder under mav0/.", true}, name);
   v.Choice({"type", "What it records.", true}, kTypes, type);
 }

@@ -14,7 +14,8 @@ struct KindOption {
   std::string_view name;
   std::string_view doc;
   std::unique_ptr<Params> (*make_params)();
-  std::string_view records = {};  ///< sensors: "imu", "magnetometer", "pressure", "temperature" or "audio"
+  /// Of sensors: "imu", "magnetometer", "pressure", "temperature", "marker" or "audio".
+  std::string_view records = {};
 };
 
 const std::vector<KindOption>& SensorOptions();  ///< the sensors of sim/, and the hydrophone

@@ -1,6 +1,7 @@
 #include "scenarios/replay.h"
 
 #include <array>
+#include <climits>
 #include <cmath>
 #include <vector>
 
@@ -44,8 +45,8 @@ RobotTime ToStamp(std::int64_t ns) { return RobotTime(Duration(ns)); }
 
 class CsvLog : public ChannelLog {
  public:
-  CsvLog(int channel, const fs::path& folder, std::string_view header)
-      : ChannelLog(channel), path_(folder / "data.csv"), data_(path_, header) {}
+  CsvLog(int channel, const fs::path& folder, std::string_view header, StampOrder order = StampOrder::kRise)
+      : ChannelLog(channel), path_(folder / "data.csv"), data_(path_, header, order) {}
 
  protected:
   std::string Name() const override { return path_.string(); }
@@ -171,7 +172,9 @@ class TemperatureLog : public CsvLog {
 
 class MarkerLog : public CsvLog {
  public:
-  MarkerLog(int channel, const fs::path& folder) : CsvLog(channel, folder, kMarkerHeader) {}
+  /// Two receivers may log one instant.
+  MarkerLog(int channel, const fs::path& folder)
+      : CsvLog(channel, folder, kMarkerHeader, StampOrder::kDoNotFall) {}
   /// No ball may have come by.
   bool may_be_empty() const override { return true; }
 
@@ -180,6 +183,8 @@ class MarkerLog : public CsvLog {
     std::array<double, 4> v{};
     std::int64_t stamp = 0;
     if (!data_.Next(stamp, v)) return false;
+    const bool known = v[0] >= 0 && v[0] <= INT_MAX && v[0] == std::floor(v[0]);
+    if (!known) data_.Refuse("a receiver is a whole number from 0 on");
     measurement_.value = MarkerPass{ToStamp(stamp), static_cast<int>(v[0]), {v[1], v[2], v[3]}};
     return true;
   }

@@ -9,7 +9,8 @@
 namespace piperun::scenarios {
 
 /// The measurements of a run folder, in the order in which they were delivered: by stamp, then channel name,
-/// then row. Streams; throws InputError with file and row for a broken record.
+/// then row; what was read out after the run behind everything else. Streams; throws InputError with file and
+/// row for a broken record.
 class MeasurementLog {
  public:
   MeasurementLog(const std::filesystem::path& run_folder, const EstimatorInput& input);

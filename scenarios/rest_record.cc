@@ -54,7 +54,9 @@ Scenario LoadSource(const std::string& source, SourceType type, const std::vecto
   return ParseScenario(WritePresetScenario(preset, name), source, overrides);
 }
 
-bool IsAudio(const SensorEntry& entry) { return entry.kind.records() == "audio"; }
+bool NeedsPipes(const SensorEntry& entry) {
+  return entry.kind.records() == "audio" || entry.kind.records() == "marker";
+}
 
 /// The physics rate that the sensors' records at rest hang on or, if none does, the lowest they can do with.
 double FindTruthRate_Hz(const Scenario& scenario) {
@@ -84,9 +86,9 @@ void Append(const std::vector<std::string>& more, std::vector<std::string>& over
 }
 
 void KeepSensorsOnly(Scenario& scenario) {
-  std::erase_if(scenario.sensors, IsAudio);
+  std::erase_if(scenario.sensors, NeedsPipes);
   if (scenario.sensors.empty())
-    throw InputError("nothing to record: there is no sensor but hydrophones", "sensors");
+    throw InputError("nothing to record: there is no sensor but hydrophones and markers", "sensors");
   Scenario rest;
   rest.schema = scenario.schema;
   rest.name = scenario.name;

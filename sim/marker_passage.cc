@@ -1,5 +1,6 @@
 #include "sim/marker_passage.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -7,8 +8,8 @@
 
 namespace piperun::sim {
 
-PassageDetector::PassageDetector(double range_m, Duration step) : range2_m2_(range_m * range_m), step_(step) {
-  Demand(range_m > 0 && step > Duration(0), "a receiver hears some way, step by step");
+PassageDetector::PassageDetector(double range_m) : range2_m2_(range_m * range_m) {
+  Demand(range_m > 0, "a receiver hears some way");
 }
 
 std::optional<Passage> PassageDetector::Step(TrueTime t, double distance2_m2) {
@@ -23,9 +24,13 @@ std::optional<Passage> PassageDetector::Step(TrueTime t, double distance2_m2) {
   return std::nullopt;
 }
 
-std::optional<Passage> PassageDetector::End() {
+void PassageDetector::Jump() {
   before_.reset();
   last_.reset();
+}
+
+std::optional<Passage> PassageDetector::End() {
+  Jump();
   return std::exchange(closest_, std::nullopt);
 }
 
@@ -37,7 +42,8 @@ void PassageDetector::TakeVertex(const Sample& next) {
   if (d1 > d0 || d1 > d2 || curvature <= 0) return;
   const double steps = 0.5 * (d0 - d2) / curvature;
   const double lowest = d1 - 0.25 * (d0 - d2) * steps;
-  Take({last_->time + FromSeconds(steps * Seconds(step_)), std::sqrt(std::max(0.0, lowest))});
+  Take({last_->time + FromSeconds(steps * Seconds(next.time - last_->time)),
+        std::sqrt(std::max(0.0, lowest))});
 }
 
 void PassageDetector::Take(const Passage& passage) {

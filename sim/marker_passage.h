@@ -24,11 +24,14 @@ struct Passage {
 /// record has its passage at the closest step.
 class PassageDetector {
  public:
-  /// `range_m` and the step are positive.
-  PassageDetector(double range_m, Duration step);
+  /// `range_m` is positive.
+  explicit PassageDetector(double range_m);
 
-  /// The next step. Returns the passage of the visit that ended with it.
+  /// The next step; steps are of one length until Jump() or End(). Returns the passage of the visit that
+  /// ended with it.
   std::optional<Passage> Step(TrueTime t, double distance2_m2);
+  /// The next step does not follow from the last one: there is no closest approach between them.
+  void Jump();
   /// Nothing comes any more, or for a while that is far away: the passage of a visit that was going on.
   std::optional<Passage> End();
 
@@ -42,7 +45,6 @@ class PassageDetector {
   void Take(const Passage& passage);
 
   double range2_m2_;
-  Duration step_;
   std::optional<Sample> before_, last_;  // the two latest steps
   std::optional<Passage> closest_;       // of the present visit
 };

@@ -69,7 +69,8 @@ class Sensor {
 struct SensorKind {
   std::string_view name;
   std::string_view doc;
-  std::string_view records;  ///< what its samples are: "imu", "magnetometer", "pressure", "temperature" or "marker"
+  /// What its samples are: "imu", "magnetometer", "pressure", "temperature" or "marker".
+  std::string_view records;
   std::unique_ptr<Params> (*make_params)();
   std::unique_ptr<Sensor> (*make)(const Params& params, const SensorContext& context);
 };

@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "base/number.h"
+#include "sim/joined_drawing.h"
 #include "sim/marker_passage.h"
 #include "sim/sensor.h"
 
@@ -60,15 +61,17 @@ struct MarkerParams : ParamsOf<MarkerParams> {
 constexpr std::uint64_t kClockSlot = 0, kSurveySlot = 1, kJitterSlot = 2, kMissedSlot = 3, kFalseSlot = 4;
 
 struct Receiver {
+  int pipe = 0;
   Vector3d p_W;           // true
   Vector3d p_surveyed_W;  // as the crew knows it
   double clock_offset_s = 0;
   double clock_rate = 1;
   PassageDetector detector;
-  std::uint64_t passes = 0;  // so far, missed ones included
+  std::optional<JoinedDrawing> drawing{};  // of the pipe that the ball is in
+  std::uint64_t passes = 0;                // so far, missed ones included
 };
 
-const Pipe& FindPipe(const SensorContext& context, const ReceiverParams& params) {
+int FindPipe(const SensorContext& context, const ReceiverParams& params) {
   const auto index = context.network->FindPipe(params.pipe);
   if (!index) throw InputError("there is no pipe '" + params.pipe + "'", "pipe");
   const Pipe& pipe = context.network->pipe(*index);
@@ -77,7 +80,7 @@ const Pipe& FindPipe(const SensorContext& context, const ReceiverParams& params)
                          "'; allowed: [0, " + FormatNumber(pipe.length_m) + "] m",
                      "s_m");
   }
-  return pipe;
+  return *index;
 }
 
 /// Above and beside the pipe's axis as it is drawn.
@@ -88,8 +91,9 @@ Vector3d FindPlace(const Pipe& pipe, const ReceiverParams& params) {
   return axis.p_W + params.cover_m * Vector3d::UnitZ() + params.aside_m * aside;
 }
 
-/// Receivers stand above the network as it is drawn; what they hear is the ball at the axis of its pipe,
-/// whose few centimetres from it mean nothing at their distance. A pass is logged as
+/// A receiver stands above the network as its own pipe is drawn; a pipe that meets it is moved to where they
+/// meet (sim/joined_drawing.h). What it hears is the ball at the axis of the pipe, whose few centimetres from
+/// it mean nothing at that distance. A pass is logged as
 ///
 ///   (1 + drift) t + offset + jitter,   t the true time of the closest approach (sim/marker_passage.h),
 ///
@@ -98,7 +102,7 @@ Vector3d FindPlace(const Pipe& pipe, const ReceiverParams& params) {
 class MarkerSensor final : public Sensor {
  public:
   MarkerSensor(const MarkerParams& params, const SensorContext& context)
-      : params_(params), context_(context), step_(SampleOffset(1, context.truth_rate)) {
+      : params_(params), context_(context) {
     for (std::size_t i = 0; i < params.receivers.size(); ++i) receivers_.push_back(MakeReceiver(i));
   }
 
@@ -135,10 +139,14 @@ class MarkerSensor final : public Sensor {
     const auto n = context_.random.Normals(Draw(i, 0), kClockSlot);
     const auto survey = context_.random.Normals(Draw(i, 0), kSurveySlot);
     try {
-      const Vector3d p_W = FindPlace(FindPipe(context_, params_.receivers[i]), params_.receivers[i]);
-      return {p_W, p_W + params_.survey_sd_m * Vector3d(survey[0], survey[1], survey[2]),
-              params_.clock_offset_sd_s * n[0], 1 + 1e-6 * params_.clock_drift_sd_ppm * n[1],
-              PassageDetector(params_.range_m, step_)};
+      const int pipe = FindPipe(context_, params_.receivers[i]);
+      const Vector3d p_W = FindPlace(context_.network->pipe(pipe), params_.receivers[i]);
+      return {pipe,
+              p_W,
+              p_W + params_.survey_sd_m * Vector3d(survey[0], survey[1], survey[2]),
+              params_.clock_offset_sd_s * n[0],
+              1 + 1e-6 * params_.clock_drift_sd_ppm * n[1],
+              PassageDetector(params_.range_m)};
     } catch (const InputError& e) {
       throw InputError(e.problem(), "receivers[" + std::to_string(i) + "]." + e.key_path());
     }
@@ -146,12 +154,21 @@ class MarkerSensor final : public Sensor {
 
   void Watch(const TruthState& ball) {
     if (ball.pipe < 0) return;
+    if (ball.pipe != pipe_) EnterPipe(ball.pipe);
     const Vector3d p_W = context_.network->pipe(ball.pipe).Eval(ball.s_m).p_W;
     for (std::size_t i = 0; i < receivers_.size(); ++i) {
-      if (const auto passage =
-              receivers_[i].detector.Step(ball.time, (p_W - receivers_[i].p_W).squaredNorm())) {
-        Log(i, *passage);
-      }
+      Receiver& receiver = receivers_[i];
+      const Vector3d p_RB_W = p_W + receiver.drawing->Shift_W(ball.s_m) - receiver.p_W;
+      if (const auto passage = receiver.detector.Step(ball.time, p_RB_W.squaredNorm())) Log(i, *passage);
+    }
+  }
+
+  void EnterPipe(int pipe) {
+    pipe_ = pipe;
+    for (Receiver& receiver : receivers_) {
+      const bool met = receiver.drawing && receiver.drawing->meets();
+      receiver.drawing.emplace(*context_.network, receiver.pipe, pipe);
+      if (!met || !receiver.drawing->meets()) receiver.detector.Jump();
     }
   }
 
@@ -182,9 +199,9 @@ class MarkerSensor final : public Sensor {
 
   MarkerParams params_;
   SensorContext context_;
-  Duration step_;
   std::vector<Receiver> receivers_;
   std::int64_t next_step_ = 0;
+  int pipe_ = -1;
   std::vector<MarkerPass> log_;
 };
 

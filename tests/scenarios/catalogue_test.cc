@@ -52,7 +52,7 @@ TEST(Catalogue, WalksHaveThePrintedLengths) {
 }
 
 TEST(SensorOptions, EveryKindSaysWhatItRecords) {
-  const std::set<std::string_view> known{"imu", "magnetometer", "pressure", "temperature", "audio"};
+  const std::set<std::string_view> known{"imu", "magnetometer", "pressure", "temperature", "marker", "audio"};
   for (const KindOption& option : SensorOptions()) EXPECT_TRUE(known.contains(option.records)) << option.name;
 }
 

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "base/check.h"
 #include "scenarios/assemble.h"
-#include "scenarios/replay_run.h"
+#include "scenarios/replay.h"
+#include "scenarios/rest_record.h"
 #include "tests/scenarios/small_scenario.h"
 
 namespace piperun::scenarios {
@@ -13,10 +15,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Scenario WithMarker(const std::string& marker, const std::vector<std::string>& set = {}) {
+/// The small scenario with `line` in place of its own marker.
+Scenario ReplaceMarker(const std::string& line, const std::vector<std::string>& set = {}) {
   std::string text = kSmallScenario;
-  text.insert(text.find("sensors:\n") + 9, "  marker0: {kind: marker, " + marker + "}\n");
+  const std::size_t begin = text.find("  marker0:"), end = text.find('\n', begin) + 1;
+  text.replace(begin, end - begin, line);
   return ParseScenario(text, "small.yaml", set);
+}
+
+Scenario WithMarker(const std::string& marker, const std::vector<std::string>& set = {}) {
+  return ReplaceMarker("  marker0: {kind: marker, " + marker + "}\n", set);
 }
 
 constexpr char kTwo[] = "receivers: [{pipe: P1, s_m: 4, cover_m: 1.5}, {pipe: P1, s_m: 2.0001, aside_m: 2}]";
@@ -117,15 +125,10 @@ TEST(Marker, RefusesWithTheKeyOfWhatIsWrong) {
   EXPECT_EQ(Refused(kTwo), "none");
 }
 
-std::string FileText(const fs::path& path) { return ReadTextFile(path); }
-
 TEST(Marker, ARunIsItsReplayAndTheOtherChannelsAreAsWithoutIt) {
   const TemporaryFolder folder;
-  RunOptions options{};
-  options.out = folder / "with";
-  Run(WithMarker(std::string("jitter_sd_s: 0.1, ") + kTwo), options);
-  options.out = folder / "without";
-  Run(MakeSmallScenario(), options);
+  RunInto(WithMarker(std::string("jitter_sd_s: 0.1, ") + kTwo), folder / "with");
+  RunInto(ReplaceMarker(""), folder / "without");
   ReplayOptions replay;
   replay.run_folder = folder / "with";
   replay.out = folder / "replay";
@@ -139,6 +142,106 @@ TEST(Marker, ARunIsItsReplayAndTheOtherChannelsAreAsWithoutIt) {
   for (const char* name : {"estimates/ekf/track.csv", "estimates/thesis/leaks.csv"}) {
     EXPECT_TRUE(FileText(folder / "with" / name) == FileText(folder / "replay" / name)) << name;
   }
+}
+
+/// Everything a run folder holds, in the order in which estimators get it.
+std::vector<Measurement> ReadAll(const fs::path& run) {
+  const EstimatorInput input = LoadEstimatorInput((run / "estimator_input.yaml").string());
+  MeasurementLog log(run, input);
+  std::vector<Measurement> all;
+  while (const Measurement* m = log.Next()) {
+    all.push_back(*m);
+    if (auto* block = std::get_if<AudioBlock>(&all.back().value)) block->counts = {};
+  }
+  return all;
+}
+
+TEST(Marker, PassesComeBehindEverythingElseInTheOrderOfTheirStamps) {
+  // 1 and 2 stand on either side of the pipe: they log one instant
+  const TemporaryFolder folder;
+  RunInto(WithMarker("receivers: [{pipe: P1, s_m: 5}, {pipe: P1, s_m: 2, aside_m: 1}, "
+                     "{pipe: P1, s_m: 2, aside_m: -1}]"),
+          folder / "run");
+  const auto all = ReadAll(folder / "run");
+  ASSERT_GT(all.size(), 1000U);
+  std::vector<int> receivers;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(IsReadOutLater(all[i]), i + 3 >= all.size()) << i;
+    if (const auto* pass = std::get_if<MarkerPass>(&all[i].value)) receivers.push_back(pass->receiver);
+  }
+  EXPECT_EQ(receivers, (std::vector<int>{1, 2, 0}));
+  EXPECT_EQ(Stamp(all[all.size() - 3]), Stamp(all[all.size() - 2]));
+  EXPECT_LT(Stamp(all.back()), Stamp(all[all.size() - 4]));
+}
+
+TEST(Marker, ALogWithoutPassesIsARecord) {
+  const TemporaryFolder folder;
+  RunInto(WithMarker("missed: 1, receivers: [{pipe: P1, s_m: 3}]", {"mission.time_limit_s=2"}),
+          folder / "run");
+  EXPECT_EQ(FileText(folder / "run/mav0/marker0/data.csv"),
+            "#timestamp [ns],receiver [],x [m],y [m],z [m]\n");
+  EXPECT_FALSE(ReadAll(folder / "run").empty());
+}
+
+TEST(Marker, ADamagedLogIsRefused) {
+  const TemporaryFolder folder;
+  RunInto(WithMarker("receivers: [{pipe: P1, s_m: 0}]", {"mission.time_limit_s=2"}), folder / "run");
+  const std::string header = "#timestamp [ns],receiver [],x [m],y [m],z [m]\n";
+  for (const char* rows : {"100,-1,1,2,3\n", "100,0.5,1,2,3\n", "100,1e300,1,2,3\n", "100,0,1,2\n",
+                           "100,0,1,2,3\n99,0,1,2,3\n", "100,0,1,2,3"}) {
+    WriteTextFile(folder / "run/mav0/marker0/data.csv", header + rows);
+    EXPECT_THROW(ReadAll(folder / "run"), InputError) << rows;
+  }
+  WriteTextFile(folder / "run/mav0/marker0/data.csv", header + "100,0,1,2,3\n100,4,1,2,3\n");
+  EXPECT_NO_THROW(ReadAll(folder / "run"));
+}
+
+/// Six metres to the east in two pipes, the first of `stated`; a receiver at the beginning of the second.
+Scenario MakeTwoPipes(const std::string& stated) {
+  std::string text = kSmallScenario;
+  const auto replace = [&text](const std::string& what, const std::string& with) {
+    text.replace(text.find(what), what.size(), with);
+  };
+  replace("    - {id: B,", "    - {id: M, position_m: [3, 0, 0]}\n    - {id: B,");
+  replace("    - {id: P1, from: A, to: B, diameter_mm: 150, wall_thickness_mm: 7.5, material: pvc_u}\n",
+          "    - {id: P1, from: A, to: M, diameter_mm: 150, wall_thickness_mm: 7.5, " + stated +
+              "}\n    - {id: P2, from: M, to: B, diameter_mm: 150, wall_thickness_mm: 7.5}\n");
+  replace("s_m: 3.1", "s_m: 2.1");
+  replace("jitter_sd_s: 0.1, receivers: [{pipe: P1, s_m: 3, cover_m: 1}]",
+          "receivers: [{pipe: P2, s_m: 0, cover_m: 1}]");
+  return ParseScenario(text, "two_pipes.yaml");
+}
+
+/// When the ball came into the second pipe, by truth/ball.csv.
+double FindEntry_s(const fs::path& run) {
+  std::stringstream rows(FileText(run / "truth/ball.csv"));
+  std::string row;
+  while (std::getline(rows, row) && row.find(",P2,") == std::string::npos) {
+  }
+  return 1e-9 * std::strtod(row.c_str(), nullptr);
+}
+
+TEST(Marker, HearsTheBallOnceWhereTwoPipesMeetOrWereStretchedApart) {
+  for (const char* stated : {"minor_loss: 0", "length_m: 9"}) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(RunInto(MakeTwoPipes(stated), folder / "run").status, "ok");
+    const auto all = ReadAll(folder / "run");
+    ASSERT_FALSE(IsReadOutLater(all[all.size() - 2]));
+    ASSERT_TRUE(IsReadOutLater(all.back()));
+    EXPECT_EQ(std::get<MarkerPass>(all.back().value).p_W, Vector3d(3, 0, 1));
+    // rows of the truth are 10 ms apart
+    EXPECT_NEAR(Seconds(Stamp(all.back())), FindEntry_s(folder / "run") - 0.005, 0.0055) << stated;
+  }
+}
+
+TEST(Marker, RecordsAtRestLeaveItOut) {
+  const TemporaryFolder folder;
+  WriteTextFile(folder / "small.yaml", kSmallScenario);
+  const Scenario rest = LoadRestScenario((folder / "small.yaml").string(), {1, {}, {}});
+  std::vector<std::string> names;
+  for (const SensorEntry& entry : rest.sensors) names.push_back(entry.name);
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{"imu0", "mag0", "pressure0", "temperature0"}));
 }
 
 }  // namespace

@@ -56,9 +56,9 @@ TEST_F(SmallRun, LeavesACompleteRunFolder) {
   for (const char* name :
        {"run.json", "scenario.yaml", "estimator_input.yaml", "mav0/imu0/data.csv", "mav0/imu0/sensor.yaml",
         "mav0/mag0/data.csv", "mav0/pressure0/data.csv", "mav0/hydrophone0/audio.wav",
-        "mav0/hydrophone0/sensor.yaml", "mav0/state_groundtruth_estimate0/data.csv", "truth/ball.csv",
-        "truth/leaks.csv", "estimates/ekf/track.csv", "estimates/ekf/trajectory.tum",
-        "estimates/ekf/leaks.csv"}) {
+        "mav0/hydrophone0/sensor.yaml", "mav0/marker0/data.csv", "mav0/marker0/sensor.yaml",
+        "mav0/state_groundtruth_estimate0/data.csv", "truth/ball.csv", "truth/leaks.csv",
+        "estimates/ekf/track.csv", "estimates/ekf/trajectory.tum", "estimates/ekf/leaks.csv"}) {
     EXPECT_TRUE(std::binary_search(files.begin(), files.end(), name)) << name;
   }
   const Json json = Json::parse(FileText(Folder() / "run.json"));
@@ -113,18 +113,33 @@ TEST_F(SmallRun, OtherChannelsDoNotChangeWhenSensorsComeGoOrMove) {
   std::string reordered = without;
   reordered.insert(reordered.find("sensors:\n") + 9, mag);
   std::string more = text;
-  more.insert(more.find("sensors:\n") + 9,
-              "  a_second_imu: {kind: imu, rate_Hz: 333, gyro: {noise_deg_s_sqrtHz: 0.1}}\n"
-              "  thermometer: {kind: temperature, offset_sd_K: 0.5, noise_sd_K: 0.1}\n"
-              "  wall_port: {kind: pressure, port_mm: [30, 0, 0], dynamic: sphere, noise_sd_Pa: 3}\n");
+  more.insert(
+      more.find("sensors:\n") + 9,
+      "  a_second_imu: {kind: imu, rate_Hz: 333, gyro: {noise_deg_s_sqrtHz: 0.1}}\n"
+      "  thermometer: {kind: temperature, offset_sd_K: 0.5, noise_sd_K: 0.1}\n"
+      "  gates: {kind: marker, survey_sd_m: 0.1, receivers: [{pipe: P1, s_m: 3}, {pipe: P1, s_m: 5}]}\n"
+      "  wall_port: {kind: pressure, port_mm: [30, 0, 0], dynamic: sphere, noise_sd_Pa: 3}\n");
   for (const std::string& variant : {without, reordered, more}) {
     const TemporaryFolder other;
     RunInto(ParseScenario(variant, "variant.yaml"), other / "run");
-    for (const char* name : {"mav0/imu0/data.csv", "mav0/pressure0/data.csv", "mav0/hydrophone0/audio.wav",
-                             "mav0/mag0/data.csv", "mav0/temperature0/data.csv", "truth/ball.csv"}) {
+    for (const char* name :
+         {"mav0/imu0/data.csv", "mav0/pressure0/data.csv", "mav0/hydrophone0/audio.wav", "mav0/mag0/data.csv",
+          "mav0/temperature0/data.csv", "mav0/marker0/data.csv", "truth/ball.csv"}) {
       if (!fs::exists(other / "run" / name)) continue;  // the removed one
       EXPECT_TRUE(FileText(Folder() / name) == FileText(other / "run" / name)) << name;
     }
+  }
+}
+
+TEST_F(SmallRun, AFilterHearsItsHydrophoneByWhateverNameItGoes) {
+  // the name decides the channel's number and its noise
+  std::string text = kSmallScenario;
+  text.replace(text.find("hydrophone0"), 11, "z_hydrophone");
+  const TemporaryFolder other;
+  for (const RunResult& result : {*result_, RunInto(ParseScenario(text, "renamed.yaml"), other / "run")}) {
+    const Json leaks = Json::parse(result.json)["estimators"]["ekf"]["leaks"];
+    ASSERT_EQ(leaks.size(), 1U);
+    EXPECT_EQ(leaks[0]["match"], "L1");
   }
 }
 

@@ -35,6 +35,7 @@ sensors:
   pressure0: {kind: pressure, rate_Hz: 50, noise_sd_Pa: 100}
   temperature0: {kind: temperature, rate_Hz: 4, offset_sd_K: 0.3, noise_sd_K: 0.05}
   hydrophone0: {kind: hydrophone, rate_Hz: 16000}
+  marker0: {kind: marker, jitter_sd_s: 0.1, receivers: [{pipe: P1, s_m: 3, cover_m: 1}]}
 estimators:
   ekf: {kind: quaternion_ekf, locator: {kind: matched_filter}}
   thesis: {kind: quaternion_ekf, locator: {kind: envelope_peak}}
