@@ -78,6 +78,7 @@ Scenario MakeTwoPipes(bool against) {
   replace("{id: P1, from: A, to: B" + wall, "{id: P1, from: A, to: M" + wall + "\n    - {id: P2, " +
                                                 (against ? "from: B, to: M" : "from: M, to: B") + wall);
   replace("pipe: P1, s_m: 3.1", against ? "pipe: P2, s_m: 2.9" : "pipe: P2, s_m: 1.1");
+  replace("pipe: P1, s_m: 3,", "pipe: P1, s_m: 1,");
   return ParseScenario(text, "two_pipes.yaml", {});
 }
 
