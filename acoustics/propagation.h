@@ -4,24 +4,9 @@
 #include <limits>
 #include <vector>
 
-#include "acoustics/pipe_wave.h"
+#include "acoustics/acoustic_network.h"
 
 namespace piperun::acoustics {
-
-/// One pipe of a network as sound sees it: what it joins and the wave it carries.
-struct AcousticPipe {
-  int from_node = 0;  ///< nodes are numbered from 0
-  int to_node = 0;
-  double length_m = 0;
-  PipeWave wave;
-};
-
-/// A place in a network, s along the pipe from its `from` node. Beyond its ends (a ball's centre past a dead
-/// end) a pipe goes on as it is.
-struct PipePlace {
-  int pipe = -1;  ///< -1: in no pipe
-  double s_m = 0;
-};
 
 /// Ways are compared by their loss at this frequency, so that there is one way for the whole band. Between
 /// pipes of one material their order is nearly that at any other frequency, the wall's share being ~ f.
