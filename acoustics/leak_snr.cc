@@ -1,7 +1,10 @@
+#include <complex>
 #include <string>
+#include <vector>
 
 #include "acoustics/hydrophone.h"
 #include "acoustics/level.h"
+#include "acoustics/network_field.h"
 #include "base/check.h"
 #include "base/number.h"
 
@@ -23,14 +26,16 @@ double CalcLeakSnr_dB(const AcousticScene& scene, std::size_t leak, const Hydrop
   Demand(leak < scene.leaks.size(), "the scene has that leak");
   RequireBand(f_low_Hz, f_high_Hz, params.rate_Hz);
   const SoundingLeak& sounding = scene.leaks[leak];
-  const PathTree paths = FindPaths(scene.pipes, sounding.place());
-  constexpr int kCells = 2048;  // midpoint rule: 1e-5 for a power law of the third order over three decades
+  constexpr int kCells = 512;  // midpoint rule: 1e-4 for a power law of the third order over three decades
   const double cell_Hz = (f_high_Hz - f_low_Hz) / kCells;
+  std::vector<double> frequencies_Hz;
+  for (int i = 0; i < kCells; ++i) frequencies_Hz.push_back(f_low_Hz + (i + 0.5) * cell_Hz);
+  const NetworkField field(scene.network, {sounding.place()}, frequencies_Hz);
   double signal = 0, noise = 0;
-  for (int i = 0; i < kCells; ++i) {
-    const double f_Hz = f_low_Hz + (i + 0.5) * cell_Hz;
-    const double gain = CalcHighPassGain(params, f_Hz);
-    signal += gain * CalcLeakPsd(scene, sounding, paths, listener.place(), f_Hz);
+  for (std::size_t i = 0; i < frequencies_Hz.size(); ++i) {
+    const double f_Hz = frequencies_Hz[i], gain = CalcHighPassGain(params, f_Hz);
+    signal += gain * CalcLeakPsd(scene, sounding, field.Impedance_Pa_s_m3(i, 0, listener.place()),
+                                 listener.place(), f_Hz);
     noise += gain * CalcBackgroundPsd(scene, listener, params.face_radius_m, f_Hz) +
              CalcSelfNoisePsd(params, f_Hz) + CalcConverterNoisePsd(params);
   }

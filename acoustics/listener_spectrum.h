@@ -1,21 +1,22 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "acoustics/bin_field.h"
 #include "acoustics/flow_noise_table.h"
 #include "acoustics/hydrophone.h"
 #include "acoustics/scene.h"
 
 namespace piperun::acoustics {
 
-/// The spectrum a listener's record has at its place, tabulated on the bins of a frame: what does not change
-/// is computed once, what changes from pipe to pipe when the listener comes into another one, what changes
-/// with place and speed costs one exponential per bin and leak. Equals the pure functions of scene.h and
-/// hydrophone.h within 0.03 dB. Where a leak has lost 200 dB or more it is silent, bin by bin; a leak that
-/// has lost so much in all of them is left out.
+/// The spectrum a listener's record has at its place, on the bins of a frame: the mean over each bin of what
+/// the pure functions of scene.h and hydrophone.h say. What does not change is computed once; what changes
+/// with place and speed costs two exponentials and a cosine per bin and leak. A sum of stems: the leaks one
+/// by one, distant noise, the eddies along the wall, the hydrophone itself.
 class ListenerSpectrum {
  public:
   /// `bins` bins at k * bin_width_Hz, k = 0, 1, ...
@@ -25,32 +26,26 @@ class ListenerSpectrum {
   /// One-sided PSD per bin into `psd` (Pa^2/Hz, `bins` values); bin 0 is silent. Does not allocate.
   void Calc(const ListenerState& listener, std::span<float> psd);
 
+  std::size_t stems() const { return leaks_.size() + 3; }
+  std::string StemName(std::size_t stem) const;
+  /// One of those that add up to Calc. Does not allocate.
+  void CalcStem(std::size_t stem, const ListenerState& listener, std::span<float> psd);
+
  private:
-  /// The way from a leak to an end of the listener's pipe.
-  struct WayToEnd {
-    double own_m = 0;               // through pipes with the wave of the listener's
-    std::vector<float> other_loss;  // through the others: integral of 2 alpha ds, per bin
-  };
   struct LeakRow {
-    PathTree paths;
-    std::vector<float> psd;        // at the hole, behind the input stage
-    std::array<WayToEnd, 3> ways;  // by WayIn; the direct one stays empty
+    std::string id;
+    PipePlace place;
+    double bore_radius_m = 0;
+    std::vector<float> near;  // what the near field adds at the hole itself, behind the input stage
   };
 
-  std::size_t bins() const { return steady_.size(); }
-  void TabulateLosses(double bin_width_Hz);
   void TabulateLeaks(const AcousticScene& scene, const std::vector<double>& high_pass, double bin_width_Hz);
-  void EnterPipe(int pipe);
-  void TabulateWay(const PathTree& paths, int node, WayToEnd& way);
-  void AddLeak(const LeakRow& leak, const PipePlace& place, std::span<float> psd) const;
+  void AddEddies(const ListenerState& listener, std::span<float> psd);
+  void AddLeak(std::size_t leak, const ListenerState& listener, std::span<float> psd);
 
-  std::vector<AcousticPipe> pipes_;
-  std::vector<std::size_t> wave_of_pipe_;           // pipes of the same make share a row of losses
-  std::vector<std::vector<float>> power_loss_1_m_;  // per wave and bin: 2 alpha
-  std::vector<double> path_m_;                      // scratch, per wave
   std::vector<LeakRow> leaks_;
-  int pipe_ = -1;  // the one that the leaks' ways lead to
-  std::vector<float> steady_;
+  std::optional<BinField> field_;  // of the leaks, if any
+  std::vector<float> distant_, self_, steady_;
   bool flow_noise_;
   FlowNoiseTable flow_noise_table_;
 };

@@ -151,10 +151,13 @@ void NetworkField::WriteEquations(const Band& band, NodalAdmittance& equations) 
     equations.AddShunt(band.UnknownOf(hole_nodes_[i]), network_.holes[i].admittance_m3_s_Pa);
   for (std::size_t node = 0; node < network_.ends.size(); ++node) {
     if (network_.ends[node] != NodeEnd::kGoesOn) continue;
-    for (const AcousticPipe& pipe : network_.pipes) {
-      if (pipe.from_node == static_cast<int>(node) || pipe.to_node == static_cast<int>(node))
-        equations.AddShunt(band.UnknownOf(static_cast<int>(node)), 1 / pipe.wave.impedance_Pa_s_m3);
-    }
+    const auto ends_here = [&](const AcousticPipe& pipe) {
+      return pipe.from_node == static_cast<int>(node) || pipe.to_node == static_cast<int>(node);
+    };
+    const auto& pipes = network_.pipes;
+    Demand(std::count_if(pipes.begin(), pipes.end(), ends_here) == 1, "a pipe that goes on ends alone");
+    const AcousticPipe& pipe = *std::find_if(pipes.begin(), pipes.end(), ends_here);
+    equations.AddShunt(band.UnknownOf(static_cast<int>(node)), 1 / pipe.wave.impedance_Pa_s_m3);
   }
   equations.Close();
 }

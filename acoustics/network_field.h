@@ -48,6 +48,8 @@ class NetworkField {
     int to_node = 0;
   };
   std::size_t FindStretch(const PipePlace& place) const;
+  std::size_t sources() const { return source_nodes_.size(); }
+  std::size_t stretches() const { return stretches_.size(); }
   const Stretch& stretch(std::size_t i) const { return stretches_[i]; }
 
   /// The impedance in a stretch is forward exp(-i k x) + backward exp(-i k (L - x)), x from its begin.

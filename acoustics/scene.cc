@@ -3,21 +3,32 @@
 #include <cmath>
 
 #include "acoustics/flow_noise.h"
+#include "acoustics/near_field.h"
+#include "acoustics/network_field.h"
 #include "base/check.h"
 
 namespace piperun::acoustics {
 
 double CalcLeakPsdAtHole(const AcousticScene& scene, const SoundingLeak& leak, double f_Hz) {
-  Demand(leak.pipe >= 0 && static_cast<std::size_t>(leak.pipe) < scene.pipes.size(), "a leak is in a pipe");
-  const PipeWave& wave = scene.pipes[static_cast<std::size_t>(leak.pipe)].wave;
+  Demand(leak.pipe >= 0 && static_cast<std::size_t>(leak.pipe) < scene.network.pipes.size(),
+         "a leak is in a pipe");
+  const PipeWave& wave = scene.network.pipes[static_cast<std::size_t>(leak.pipe)].wave;
   const double half_impedance = 0.5 * wave.impedance_Pa_s_m3;
   return half_impedance * half_impedance * leak.sound->VolumeVelocityPsd(f_Hz);
 }
 
-double CalcLeakPsd(const AcousticScene& scene, const SoundingLeak& leak, const PathTree& paths,
-                   const PipePlace& place, double f_Hz) {
-  const double loss_Np = CalcPathLoss_Np(scene.pipes, paths, place, f_Hz);
-  return CalcLeakPsdAtHole(scene, leak, f_Hz) * std::exp(-2 * loss_Np);
+double CalcLeakPsd(const AcousticScene& scene, const SoundingLeak& leak, const PipePlace& place,
+                   double f_Hz) {
+  const NetworkField field(scene.network, {leak.place()}, {f_Hz});
+  return CalcLeakPsd(scene, leak, field.Impedance_Pa_s_m3(0, 0, place), place, f_Hz);
+}
+
+double CalcLeakPsd(const AcousticScene& scene, const SoundingLeak& leak,
+                   const std::complex<double>& impedance_Pa_s_m3, const PipePlace& place, double f_Hz) {
+  const double plane = std::norm(impedance_Pa_s_m3) * leak.sound->VolumeVelocityPsd(f_Hz);
+  if (place.pipe != leak.pipe) return plane;
+  const PipeWave& wave = scene.network.pipes[static_cast<std::size_t>(leak.pipe)].wave;
+  return plane + CalcNearField(wave, place.s_m - leak.s_m, f_Hz) * CalcLeakPsdAtHole(scene, leak, f_Hz);
 }
 
 double CalcBackgroundPsd(const AcousticScene& scene, const ListenerState& listener, double face_radius_m,

@@ -1,12 +1,13 @@
 #pragma once
 
+#include <complex>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "acoustics/acoustic_network.h"
 #include "acoustics/ambient.h"
 #include "acoustics/impact.h"
-#include "acoustics/propagation.h"
 #include "acoustics/source.h"
 #include "base/water.h"
 
@@ -35,7 +36,8 @@ struct SoundingLeak {
 
 /// The acoustic world of one run: all pipes of the network, its leaks, its background, the ball.
 struct AcousticScene {
-  std::vector<AcousticPipe> pipes;
+  AcousticNetwork network;
+  std::vector<int> listening_pipes;  ///< where the ball can be, rising; empty: in all
   std::vector<SoundingLeak> leaks;
   AmbientParams ambient;
   WaterProperties water;
@@ -46,10 +48,13 @@ struct AcousticScene {
 /// (Zc/2)^2 S_q(f), one-sided, in Pa^2/Hz; Zc of the pipe that holds the leak. Range f >= 0.
 double CalcLeakPsdAtHole(const AcousticScene& scene, const SoundingLeak& leak, double f_Hz);
 
-/// Spectrum of a leak in the water at a place: CalcLeakPsdAtHole times exp(-2 CalcPathLoss_Np), zero where no
-/// pipe leads. `paths` are those from the leak, FindPaths(scene.pipes, leak.place()).
-double CalcLeakPsd(const AcousticScene& scene, const SoundingLeak& leak, const PathTree& paths,
-                   const PipePlace& place, double f_Hz);
+/// Spectrum of a leak in the water at a place: |Z|^2 S_q with Z of network_field.h, and beside the hole what
+/// near_field.h adds to CalcLeakPsdAtHole. Zero where no sound comes. Solves the network: for checks and for
+/// a few frequencies; a record takes bin_field.h.
+double CalcLeakPsd(const AcousticScene& scene, const SoundingLeak& leak, const PipePlace& place, double f_Hz);
+/// The same from an impedance that is known.
+double CalcLeakPsd(const AcousticScene& scene, const SoundingLeak& leak,
+                   const std::complex<double>& impedance_Pa_s_m3, const PipePlace& place, double f_Hz);
 
 /// Spectrum of everything in the water that is not a leak, on a hydrophone face of the given radius: distant
 /// noise and, in a pipe of a scene that has it, the wall pressure of the eddies that pass. One-sided,

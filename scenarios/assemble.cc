@@ -5,19 +5,13 @@
 
 #include "base/check.h"
 #include "base/number.h"
+#include "scenarios/acoustic_scene.h"
 #include "scenarios/network_params.h"
 
 namespace piperun::scenarios {
 namespace {
 
 constexpr std::string_view kGroundtruthFolder = "state_groundtruth_estimate0";
-
-template <class Kind>
-const Kind& FindKind(const std::vector<Kind>& kinds, const std::string& name) {
-  const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return k.name == name; });
-  Demand(found != kinds.end(), "a kind's name was checked when the scenario was read");
-  return *found;
-}
 
 /// With pinned branches, only the planned way is open.
 std::vector<bool> FindOpenPipes(const MissionParams& mission, const Pipeline& pipeline) {
@@ -37,30 +31,6 @@ void BuildWay(const Scenario& scenario, Assembly& assembly) {
   assembly.wall_features = std::move(list.labels);
   for (const WallFeatureLabel& label : assembly.wall_features) {
     if (label.kind == "joint") assembly.stick_joints.push_back({label.pipe, label.s_m});
-  }
-}
-
-void BuildScene(const Scenario& scenario, Assembly& assembly) {
-  acoustics::AcousticScene& scene = assembly.scene;
-  scene.ambient = scenario.ambient;
-  scene.water = assembly.water;
-  scene.ball = {scenario.ball.radius_m, scenario.ball.mass_kg(),
-                scenario.ball.contact_stiffness_N_m.has_value()};
-  if (!assembly.pipeline) return;
-  const Pipeline& pipeline = *assembly.pipeline;
-  for (const Pipe& pipe : pipeline.network.pipes()) {
-    scene.pipes.push_back(
-        {pipe.from, pipe.to, pipe.length_m,
-         acoustics::CalcPipeWave(pipe.diameter_m, pipe.wall_thickness_m, pipe.material, assembly.water)});
-  }
-  const KindEntry drawn_sound = LeakEntry{}.sound;
-  for (std::size_t i = 0; i < pipeline.leaks.size(); ++i) {
-    const Leak& leak = pipeline.leaks[i];
-    const KindEntry& sound = i < scenario.leaks.size() ? scenario.leaks[i].sound : drawn_sound;
-    const auto& kind = FindKind(acoustics::LeakSoundKinds(), sound.kind());
-    scene.leaks.push_back({leak.id, leak.pipe, leak.s_m,
-                           kind.make(sound.params(), leak.hole_diameter_m, pipeline.leak_states[i],
-                                     assembly.water.density_kg_m3)});
   }
 }
 
@@ -154,7 +124,9 @@ std::unique_ptr<Assembly> Build(const Scenario& scenario) {
   } else if (!scenario.wall_features.empty()) {
     throw InputError("a wall feature needs a pipe, and this scenario has no network", "wall_features");
   }
-  BuildScene(scenario, *assembly);
+  assembly->scene =
+      MakeAcousticScene(scenario, assembly->water, assembly->pipeline ? &*assembly->pipeline : nullptr,
+                        assembly->bore ? &*assembly->bore : nullptr);
   BuildMotion(scenario, *assembly);
   BuildChannels(scenario, *assembly);
   return assembly;

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/check.h"
 #include "base/params.h"
 
 namespace piperun::scenarios {
@@ -23,6 +25,14 @@ const std::vector<KindOption>& MotionOptions();
 const std::vector<KindOption>& LeakSoundOptions();
 const std::vector<KindOption>& WallFeatureOptions();
 const std::vector<KindOption>& FilterOptions();
+
+/// The kind that an entry names, in the generated table of its floor.
+template <class Kind>
+const Kind& FindKind(const std::vector<Kind>& kinds, std::string_view name) {
+  const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return k.name == name; });
+  Demand(found != kinds.end(), "a kind's name was checked when the scenario was read");
+  return *found;
+}
 
 /// "kind: NAME" and, beside it, the parameters of that kind. A value type.
 class KindEntry {

@@ -98,11 +98,23 @@ TEST(ConverterNoise, Of16BitsAtOneKilopascalIs40Decibels) {
   EXPECT_NEAR(CalcLevel_dB(CalcConverterNoisePsd(params)), 39.9, 0.05);
 }
 
+/// Mean over a bin, at the four frequencies that stand for it.
+double CalcLeakPsdInBin(const AcousticScene& scene, std::size_t leak, const PipePlace& place,
+                        std::size_t bin) {
+  double sum = 0;
+  for (std::size_t j = 0; j < StretchField::kParts; ++j) {
+    const double f_Hz = 15.625 * (static_cast<double>(bin) + StretchField::OffsetInBin(bin, j));
+    sum += CalcLeakPsdAt(scene, leak, place, f_Hz) / StretchField::kParts;
+  }
+  return sum;
+}
+
 class ListenerSpectrumAt : public testing::TestWithParam<ListenerState> {};
 
 TEST_P(ListenerSpectrumAt, TabulatesThePureFunctions) {
   AcousticScene scene = MakeQuietScene(MakePvcWave());
-  scene.pipes = {{0, 1, 10, MakePvcWave()}, {1, 2, 20, MakeIronWave()}, {2, 3, 20, MakePvcWave()}};
+  scene.network =
+      MakeNetwork({{0, 1, 10, MakePvcWave()}, {1, 2, 20, MakeIronWave()}, {2, 3, 20, MakePvcWave()}});
   scene.ambient = {};
   AddLeak(scene, 8, MakeJet(1e-5, 1e-3));
   AddLeak(scene, {1, 3}, MakeJet(5e-5, 3e-3));
@@ -115,9 +127,10 @@ TEST_P(ListenerSpectrumAt, TabulatesThePureFunctions) {
   for (std::size_t k = 1; k < psd.size(); ++k) {
     const double f_Hz = static_cast<double>(k) * width_Hz;
     double sound = CalcBackgroundPsd(scene, GetParam(), params.face_radius_m, f_Hz);
-    for (const std::size_t leak : {0u, 1u}) sound += CalcLeakPsdAt(scene, leak, GetParam().place(), f_Hz);
+    for (const std::size_t leak : {0u, 1u}) sound += CalcLeakPsdInBin(scene, leak, GetParam().place(), k);
     const double expected = sound * f_Hz * f_Hz / (f_Hz * f_Hz + 100) + CalcSelfNoisePsd(params, f_Hz);
-    EXPECT_NEAR(10 * std::log10(psd[k] / expected), 0, 0.03) << f_Hz << " Hz";
+    // along a stretch a bin has one attenuation, whichever of its frequencies the waves at the ends prefer
+    EXPECT_NEAR(10 * std::log10(psd[k] / expected), 0, 0.1) << f_Hz << " Hz";
   }
 }
 
@@ -131,8 +144,8 @@ INSTANTIATE_TEST_SUITE_P(
 AcousticScene MakeTeeScene() {
   AcousticScene scene = MakeQuietScene(MakePvcWave());
   const PipeWave branch = CalcPipeWave(0.1, 0.005, MakeWall(3.5e9, 0.05), MakeWater10C());
-  scene.pipes = {
-      {0, 1, 10, MakePvcWave()}, {1, 2, 20, MakeIronWave()}, {3, 1, 15, branch}, {4, 5, 30, MakePvcWave()}};
+  scene.network = MakeNetwork(
+      {{0, 1, 10, MakePvcWave()}, {1, 2, 20, MakeIronWave()}, {3, 1, 15, branch}, {4, 5, 30, MakePvcWave()}});
   scene.ambient = {};
   AddLeak(scene, {0, 8}, MakeJet(1e-5, 1e-3));
   AddLeak(scene, {2, 12}, MakeJet(2e-5, 1e-3));
@@ -153,10 +166,10 @@ TEST(ListenerSpectrum, AroundATeeIsThatOfThePureFunctions) {
     for (std::size_t k = 1; k < psd.size(); ++k) {
       const double f_Hz = 15.625 * static_cast<double>(k);
       const ListenerState listener{place.pipe, place.s_m, 0.4, 0.05, 0.075};
-      const double sound = CalcLeakPsdAt(scene, 0, place, f_Hz) + CalcLeakPsdAt(scene, 1, place, f_Hz) +
+      const double sound = CalcLeakPsdInBin(scene, 0, place, k) + CalcLeakPsdInBin(scene, 1, place, k) +
                            CalcBackgroundPsd(scene, listener, 0.005, f_Hz);
       const double expected = sound * f_Hz * f_Hz / (f_Hz * f_Hz + 100) + CalcSelfNoisePsd({}, f_Hz);
-      EXPECT_NEAR(10 * std::log10(psd[k] / expected), 0, 0.03) << place.pipe << ", " << f_Hz << " Hz";
+      EXPECT_NEAR(10 * std::log10(psd[k] / expected), 0, 0.05) << place.pipe << ", " << f_Hz << " Hz";
     }
   }
 }
@@ -175,9 +188,9 @@ TEST(ListenerSpectrum, IsTheSameFromAllPipesOfANode) {
   const auto main = CalcSpectrumAt(spectrum, {0, 10});
   const auto onward = CalcSpectrumAt(spectrum, {1, 0}), branch = CalcSpectrumAt(spectrum, {2, 15});
   for (std::size_t k = 1; k < main.size(); ++k) {
-    // single precision: a loss of up to 46 Np is rounded by 2^-19 Np
-    EXPECT_NEAR(onward[k] / main[k], 1, 1e-5) << k;
-    EXPECT_NEAR(branch[k] / main[k], 1, 1e-5) << k;
+    // the loss from an end of a pipe on is that of the bin's middle
+    EXPECT_NEAR(onward[k] / main[k], 1, 2e-3) << k;
+    EXPECT_NEAR(branch[k] / main[k], 1, 2e-3) << k;
   }
 }
 

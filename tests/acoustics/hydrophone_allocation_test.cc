@@ -27,7 +27,8 @@ namespace {
 TEST(Hydrophone, RenderingDoesNotAllocate) {
   AcousticScene scene = MakeQuietScene(MakePvcWave());
   scene.ambient = {};
-  scene.pipes = {{0, 1, 2, MakePvcWave()}, {1, 2, 3, MakeIronWave()}, {2, 3, 400, MakePvcWave()}};
+  scene.network =
+      MakeNetwork({{0, 1, 2, MakePvcWave()}, {1, 2, 3, MakeIronWave()}, {2, 3, 400, MakePvcWave()}});
   AddLeak(scene, {2, 5}, MakeJet(1e-5, 1e-3));
   Hydrophone hydrophone({}, scene, RandomStream(1, "hydrophone0", 0));
   // from pipe to pipe, with slip speeds over two decades, so that flow noise is tabulated anew again and

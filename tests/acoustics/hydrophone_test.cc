@@ -134,10 +134,10 @@ TEST(Hydrophone, LevelFallsWithDistanceAsTheAttenuationSays) {
         MeanSquare(RenderPressure(scene, MakeNoiselessHydrophone(), kRandom, StillAt(s_m), 100)));
   };
   // 3.21 dB/m at 1 kHz in the published table; the same seed at all places: only the level differs
-  const double at_hole_dB = level_dB(10);
-  EXPECT_NEAR((at_hole_dB - level_dB(15)) / 5, 3.21, 0.01 * 3.21);
-  EXPECT_NEAR((at_hole_dB - level_dB(5)) / 5, 3.21, 0.01 * 3.21);
-  EXPECT_NEAR((at_hole_dB - level_dB(10.5)) / 0.5, 3.21, 0.01 * 3.21);
+  const double beside_dB = level_dB(10.3);  // two bores from the hole
+  EXPECT_NEAR((beside_dB - level_dB(15)) / 4.7, 3.21, 0.01 * 3.21);
+  EXPECT_NEAR((beside_dB - level_dB(5)) / 4.7, 3.21, 0.01 * 3.21);
+  EXPECT_NEAR((beside_dB - level_dB(10.8)) / 0.5, 3.21, 0.01 * 3.21);
 }
 
 /// Level of consecutive stretches of 32 ms against the place of their middle.
@@ -204,10 +204,28 @@ TEST(Hydrophone, PassingAHoleIsLoudestThereAndFallsOffStraight) {
   }
 }
 
+TEST(Hydrophone, BesideTheHoleItHearsTheNearField) {
+  // at 1 kHz in DN150: k a = 0.32, so 10 log10(1 + 0.32^2) = 0.43 dB over the plane wave on the axis at the
+  // hole, and nothing of it a bore away
+  AcousticScene scene = MakeQuietScene(MakeStiffWave());
+  const PipeWave wave = MakeStiffWave();
+  AddLeak(scene, 10, std::make_shared<FlatSound>(1e-14, 980, 1020));
+  const auto level_dB = [&](double s_m) {
+    return CalcLevel_dB(
+        MeanSquare(RenderPressure(scene, MakeNoiselessHydrophone(), kRandom, StillAt(s_m), 50)));
+  };
+  const double ka = 2 * std::numbers::pi * 1000 / MakeWater10C().sound_speed_m_s * wave.bore_radius_m;
+  EXPECT_NEAR(ka, 0.34, 0.01);
+  EXPECT_NEAR(level_dB(10) - level_dB(10.25), 10 * std::log10(1 + ka * ka), 0.02);
+  // halfway out: z = 0.15 D
+  const double z_m = 0.3 * wave.bore_radius_m, share = std::exp(-1.0) / (1 + 0.09);
+  EXPECT_NEAR(level_dB(10 - z_m) - level_dB(10.25), 10 * std::log10(1 + ka * ka * share), 0.02);
+}
+
 TEST(Hydrophone, CountsWhatItClips) {
-  AcousticScene scene = MakeQuietScene(MakePvcWave());
+  AcousticScene scene = MakeQuietScene(MakeStiffWave());
   const double pressure_rms_Pa = 1;
-  const double impedance = MakePvcWave().impedance_Pa_s_m3;
+  const double impedance = MakeStiffWave().impedance_Pa_s_m3;
   AddLeak(scene, 10, std::make_shared<FlatSound>(4 / (impedance * impedance) / 4000, 2000, 6000));
   HydrophoneParams params = MakeNoiselessHydrophone();
   params.full_scale_Pa = 2 * pressure_rms_Pa;
@@ -215,7 +233,7 @@ TEST(Hydrophone, CountsWhatItClips) {
     params.bits = bits;
     Hydrophone hydrophone(params, scene, kRandom);
     std::vector<std::int32_t> counts(800000);
-    hydrophone.Render(StillAt(10), counts);
+    hydrophone.Render(StillAt(10.5), counts);
     const std::int32_t largest = (1 << (bits - 1)) - 1;
     double at_the_stop = 0;
     for (const std::int32_t c : counts) {
@@ -260,11 +278,21 @@ TEST(Hydrophone, AListenerThatIsNotFiniteHearsNothing) {
   EXPECT_TRUE(std::all_of(counts.begin() + 2048, counts.end(), [](std::int32_t c) { return c == 0; }));
 }
 
+/// Within single precision, and rounding of the converter.
+template <class Record>
+void ExpectAlike(const Record& a, const Record& b) {
+  ASSERT_EQ(a.size(), b.size());
+  const double step_Pa = 2 * 1000 / 65536.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_NEAR(a[i], b[i], 1e-4 * std::sqrt(MeanSquare(b)) + 1.01 * step_Pa) << i;
+  }
+}
+
 TEST(Hydrophone, APipeCutInTwoSoundsAsTheWholeOne) {
   AcousticScene whole = MakeQuietScene(MakePvcWave());
   AddLeak(whole, 60, MakeJet(2e-5, 1.2e-3));
   AcousticScene cut = MakeQuietScene(MakePvcWave());
-  cut.pipes = {{0, 1, 64, MakePvcWave()}, {2, 1, 336, MakePvcWave()}};
+  cut.network = MakeNetwork({{0, 1, 64, MakePvcWave()}, {2, 1, 336, MakePvcWave()}});
   AddLeak(cut, {0, 60}, MakeJet(2e-5, 1.2e-3));
   const auto s_m = [](TrueTime t) { return 62.5 + 1.5 * Seconds(t); };
   const auto in_whole = [&](TrueTime t) { return ListenerState{0, s_m(t), 0.5, 0.05, 0.07}; };
@@ -272,15 +300,15 @@ TEST(Hydrophone, APipeCutInTwoSoundsAsTheWholeOne) {
     const ListenerState before{0, s_m(t), 0.5, 0.05, 0.07}, beyond{1, 400 - s_m(t), 0.5, 0.05, 0.07};
     return s_m(t) < 64 ? before : beyond;
   };
-  // lengths are sums of powers of two and round to the same single precision number either way
-  EXPECT_EQ(RenderPressure(cut, {}, kRandom, in_cut, 4), RenderPressure(whole, {}, kRandom, in_whole, 4));
+  ExpectAlike(RenderPressure(cut, {}, kRandom, in_cut, 4), RenderPressure(whole, {}, kRandom, in_whole, 4));
 }
 
-TEST(Hydrophone, ALeakTooFarToBeHeardChangesNoBit) {
+TEST(Hydrophone, ALeakTooFarToBeHeardChangesNothing) {
   AcousticScene near = MakeQuietScene(MakePvcWave());
   near.ambient = {};
-  near.pipes.push_back({1, 2, 1e4, MakePvcWave()});  // 0.05 dB/m in the lowest bin
-  near.pipes.push_back({3, 4, 10, MakePvcWave()});
+  near.network = MakeNetwork({{0, 1, kPipe_m, MakePvcWave()},
+                              {1, 2, 1e4, MakePvcWave()},  // 0.05 dB/m in the lowest bin
+                              {3, 4, 10, MakePvcWave()}});
   AddLeak(near, {0, 4}, MakeJet(2e-5, 1.2e-3));
   AcousticScene far = near;
   AddLeak(far, {1, 9e3}, MakeJet(2e-5, 1.2e-3));
@@ -289,19 +317,19 @@ TEST(Hydrophone, ALeakTooFarToBeHeardChangesNoBit) {
   AcousticScene audible = near;
   AddLeak(audible, {0, 6}, MakeJet(2e-5, 1.2e-3));
   const auto base = RenderPressure(near, {}, kRandom, WalkPast, 2);
-  EXPECT_EQ(RenderPressure(far, {}, kRandom, WalkPast, 2), base);
-  EXPECT_NE(RenderPressure(audible, {}, kRandom, WalkPast, 2), base);
+  ExpectAlike(RenderPressure(far, {}, kRandom, WalkPast, 2), base);
+  EXPECT_GT(MeanSquare(RenderPressure(audible, {}, kRandom, WalkPast, 2)), 1.1 * MeanSquare(base));
 }
 
 TEST(Hydrophone, LevelDoesNotDependOnTheRate) {
-  AcousticScene scene = MakeQuietScene(MakePvcWave());
+  AcousticScene scene = MakeQuietScene(MakeStiffWave());
   AddLeak(scene, 10, std::make_shared<FlatSound>(1e-14, 500, 3500));
   HydrophoneParams params = MakeNoiselessHydrophone();
-  const double half_impedance = MakePvcWave().impedance_Pa_s_m3 / 2;
+  const double half_impedance = MakeStiffWave().impedance_Pa_s_m3 / 2;
   const double expected_dB = CalcLevel_dB(half_impedance * half_impedance * 1e-14 * 3000);
   for (const double rate_Hz : {8000.0, 11025.0, 44100.0, 96000.0}) {
     params.rate_Hz = rate_Hz;
-    const auto pressure = RenderPressure(scene, params, kRandom, StillAt(10), 30);
+    const auto pressure = RenderPressure(scene, params, kRandom, StillAt(10.5), 30);
     EXPECT_NEAR(CalcLevel_dB(MeanSquare(pressure)), expected_dB, 0.08) << rate_Hz;
   }
 }
@@ -319,16 +347,16 @@ TEST(Hydrophone, RefusesParametersOutOfRange) {
 }
 
 TEST(LeakSnr, IsTheRatioOfFlatSpectra) {
-  AcousticScene scene = MakeQuietScene(MakePvcWave());
+  AcousticScene scene = MakeQuietScene(MakeStiffWave());
   AddLeak(scene, 10, std::make_shared<FlatSound>(1e-20, 0, 1e6));
   scene.ambient.distant_level_dB_re_1uPa2_Hz = 60;
   HydrophoneParams params = MakeNoiselessHydrophone();
-  const double half_impedance = MakePvcWave().impedance_Pa_s_m3 / 2;
+  const double half_impedance = MakeStiffWave().impedance_Pa_s_m3 / 2;
   const double leak_dB = CalcLevel_dB(half_impedance * half_impedance * 1e-20);
-  const ListenerState at_hole{0, 10, 0, 0, kPvcBore_m / 2};
-  EXPECT_NEAR(CalcLeakSnr_dB(scene, 0, params, at_hole, 1000, 4000), leak_dB - 60, 0.01);
+  const ListenerState beside{0, 10.5, 0, 0, kPvcBore_m / 2};
+  EXPECT_NEAR(CalcLeakSnr_dB(scene, 0, params, beside, 1000, 4000), leak_dB - 60, 0.01);
   params.self_noise_dB_re_1uPa2_Hz = 60;  // twice the noise
-  EXPECT_NEAR(CalcLeakSnr_dB(scene, 0, params, at_hole, 1000, 4000), leak_dB - 63.01, 0.01);
+  EXPECT_NEAR(CalcLeakSnr_dB(scene, 0, params, beside, 1000, 4000), leak_dB - 63.01, 0.01);
 }
 
 TEST(LeakSnr, EqualsTheIntegralsOfTheFormulas) {
@@ -366,7 +394,7 @@ TEST(LeakSnr, FollowsTheTableOfSnrAgainstDistance) {
     double distance_m = 0, snr_dB = 0;
   };
   const PipeWave iron = CalcPipeWave(0.158, 0.006, MakeWall(165e9, 0.01), MakeWater10C());
-  for (const Row& row : {Row{MakePvcWave(), 0, 24}, Row{MakePvcWave(), 1, 18}, Row{iron, 0, 33},
+  for (const Row& row : {Row{MakePvcWave(), 1, 18}, Row{iron, 0.4, 33},  // plane waves: off the hole
                          Row{iron, 20, 30}, Row{iron, 100, 22}}) {
     AcousticScene scene = MakeQuietScene(row.wave);
     scene.ambient = {};
@@ -386,7 +414,7 @@ TEST(LeakSnr, OfASilentLeakIsMinusInfinity) {
 
 TEST(LeakSnr, WhereNoPipeLeadsIsMinusInfinity) {
   AcousticScene scene = MakeQuietScene(MakePvcWave());
-  scene.pipes.push_back({2, 3, 10, MakePvcWave()});
+  scene.network = MakeNetwork({{0, 1, kPipe_m, MakePvcWave()}, {2, 3, 10, MakePvcWave()}});
   AddLeak(scene, 10, MakeJet(1e-5, 1e-3));
   for (const int pipe : {-1, 1}) {
     EXPECT_EQ(CalcLeakSnr_dB(scene, 0, {}, {pipe, 5, 0, 0, 0.07}, 1000, 4000),

@@ -26,6 +26,13 @@ inline PipeWave MakeIronWave() {
   return CalcPipeWave(0.158, 0.006, MakeWall(165e9, 0.02, 0.28, 7100), MakeWater10C());
 }
 
+/// The same with no loss in the wall: 0.003 dB in half a metre at 6 kHz.
+inline PipeWave MakeStiffWave() {
+  PipeWave wave = MakeIronWave();
+  wave.loss_factor = 0;
+  return wave;
+}
+
 /// A sound with a flat spectrum between two frequencies and none outside.
 class FlatSound : public LeakSound {
  public:
@@ -41,10 +48,25 @@ class FlatSound : public LeakSound {
 
 inline constexpr double kPipe_m = 400;
 
-/// One pipe of 400 m without any background.
+/// Pipes that go on wherever one of them ends alone.
+inline AcousticNetwork MakeNetwork(std::vector<AcousticPipe> pipes) {
+  AcousticNetwork network;
+  for (const AcousticPipe& pipe : pipes) {
+    for (const int node : {pipe.from_node, pipe.to_node}) {
+      const auto i = static_cast<std::size_t>(node);
+      const bool met = i < network.ends.size() && network.ends[i] == NodeEnd::kGoesOn;
+      if (i >= network.ends.size()) network.ends.resize(i + 1, NodeEnd::kOpenWater);
+      network.ends[i] = met || network.ends[i] == NodeEnd::kClosed ? NodeEnd::kClosed : NodeEnd::kGoesOn;
+    }
+  }
+  network.pipes = std::move(pipes);
+  return network;
+}
+
+/// One pipe that goes on beyond its 400 m, without any background.
 inline AcousticScene MakeQuietScene(const PipeWave& wave) {
   AcousticScene scene;
-  scene.pipes = {{0, 1, kPipe_m, wave}};
+  scene.network = MakeNetwork({{0, 1, kPipe_m, wave}});
   scene.water = MakeWater10C();
   scene.ambient = {
       .distant_level_dB_re_1uPa2_Hz = -200, .distant_slope_dB_per_decade = 0, .flow_noise = false};
@@ -63,8 +85,7 @@ inline void AddLeak(AcousticScene& scene, double s_m, std::shared_ptr<const Leak
 
 /// The spectrum of leak `i` at a place.
 inline double CalcLeakPsdAt(const AcousticScene& scene, std::size_t i, const PipePlace& place, double f_Hz) {
-  const SoundingLeak& leak = scene.leaks[i];
-  return CalcLeakPsd(scene, leak, FindPaths(scene.pipes, leak.place()), place, f_Hz);
+  return CalcLeakPsd(scene, scene.leaks[i], place, f_Hz);
 }
 
 /// The turbulent jet with its default parameters.

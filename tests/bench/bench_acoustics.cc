@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "acoustics/hydrophone.h"
+#include "acoustics/network_field.h"
 
 namespace piperun::acoustics {
 namespace {
@@ -33,7 +34,10 @@ void AddLeak(AcousticScene& scene, int pipe, double s_m) {
 AcousticScene MakeMain() {
   AcousticScene scene;
   scene.water = kWater;
-  scene.pipes = {{0, 1, 100, CalcPipeWave(0.1475, 0.0075, kPvc, kWater)}};
+  scene.network = {{{0, 1, 100, CalcPipeWave(0.1475, 0.0075, kPvc, kWater)}},
+                   {NodeEnd::kGoesOn, NodeEnd::kGoesOn},
+                   {},
+                   {}};
   for (const double s_m : {5.0, 8.0, 12.0}) AddLeak(scene, 0, s_m);
   return scene;
 }
@@ -45,8 +49,8 @@ AcousticScene MakeTown() {
   AcousticScene scene;
   scene.water = kWater;
   const auto add_pipe = [&scene](int from, int to) {
-    const double bore_m = 0.08 + 0.02 * static_cast<double>(scene.pipes.size() * 7 % 10);
-    scene.pipes.push_back({from, to, 16, CalcPipeWave(bore_m, 0.006, kIron, kWater)});
+    const double bore_m = 0.08 + 0.02 * static_cast<double>(scene.network.pipes.size() * 7 % 10);
+    scene.network.pipes.push_back({from, to, 16, CalcPipeWave(bore_m, 0.006, kIron, kWater)});
   };
   for (int row = 0; row < kStreets; ++row) {
     for (int column = 0; column < kStreets; ++column) {
@@ -56,6 +60,7 @@ AcousticScene MakeTown() {
     }
   }
   for (int i = 0; i < 20; ++i) AddLeak(scene, 60 * i, 5);
+  for (int i = 0; i < 20; ++i) scene.listening_pipes.push_back(2 * i);
   return scene;
 }
 
@@ -99,6 +104,25 @@ void AssembleTown(benchmark::State& state) {
   }
 }
 BENCHMARK(AssembleTown)->Unit(benchmark::kMillisecond);
+
+/// 100 nodes on a ring with chords of iron, all sides different: 512 frequencies, three sources.
+void SolveField(benchmark::State& state) {
+  AcousticNetwork network;
+  const PipeWave wave = CalcPipeWave(0.158, 0.006, kIron, kWater);
+  for (int i = 0; i < 100; ++i) {
+    network.pipes.push_back({i, (i + 1) % 100, 20 + 0.37 * i, wave});
+    if (i % 5 == 0) network.pipes.push_back({i, (i + 13) % 100, 50 + 0.11 * i, wave});
+  }
+  std::vector<double> frequencies_Hz;
+  for (int k = 1; k <= 512; ++k) frequencies_Hz.push_back(15.625 * k);
+  const auto whole = static_cast<double>(state.range(0));  // of the band, so that nothing is left out below 1
+  for (double& f_Hz : frequencies_Hz) f_Hz *= whole / 1000;
+  for (auto _ : state) {
+    const NetworkField field(network, {{0, 3}, {40, 7}, {77, 5}}, frequencies_Hz);
+    benchmark::DoNotOptimize(field.Impedance_Pa_s_m3(511, 2, {30, 1}));
+  }
+}
+BENCHMARK(SolveField)->Arg(1000)->Arg(10)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace piperun::acoustics

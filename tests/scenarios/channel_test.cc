@@ -85,11 +85,11 @@ Scenario MakeTwoPipes(bool against) {
 TEST(AcousticScene, HoldsAllPipesOfTheNetworkAndItsLeaksOnThem) {
   const auto assembly = Assemble(MakeTwoPipes(true));
   const acoustics::AcousticScene& scene = assembly->scene;
-  ASSERT_EQ(scene.pipes.size(), 2u);
-  EXPECT_EQ(scene.pipes[0].to_node, *assembly->network()->FindNode("M"));
-  EXPECT_EQ(scene.pipes[1].from_node, *assembly->network()->FindNode("B"));
-  EXPECT_EQ(scene.pipes[1].to_node, *assembly->network()->FindNode("M"));
-  EXPECT_NEAR(scene.pipes[1].length_m, 4, 1e-12);
+  ASSERT_EQ(scene.network.pipes.size(), 2u);
+  EXPECT_EQ(scene.network.pipes[0].to_node, *assembly->network()->FindNode("M"));
+  EXPECT_EQ(scene.network.pipes[1].from_node, *assembly->network()->FindNode("B"));
+  EXPECT_EQ(scene.network.pipes[1].to_node, *assembly->network()->FindNode("M"));
+  EXPECT_NEAR(scene.network.pipes[1].length_m, 4, 1e-12);
   ASSERT_EQ(scene.leaks.size(), 1u);
   EXPECT_EQ(scene.leaks[0].id, "L1");
   EXPECT_EQ(scene.leaks[0].pipe, 1);
