@@ -6,6 +6,7 @@
 #include "acoustics/decay.h"
 #include "acoustics/flow_noise.h"
 #include "acoustics/propagation.h"
+#include "acoustics/rolling.h"
 #include "base/check.h"
 
 namespace piperun::acoustics {
@@ -28,6 +29,18 @@ std::vector<float> TabulateSteady(const AcousticScene& scene, const HydrophonePa
     const double f_Hz = static_cast<double>(k) * bin_width_Hz;
     psd[k] = static_cast<float>(high_pass[k] * CalcDistantNoisePsd(scene.ambient, f_Hz) +
                                 CalcSelfNoisePsd(params, f_Hz));
+  }
+  return psd;
+}
+
+/// Empty where a ball does not sound when it rolls.
+std::vector<float> TabulateRolling(const AcousticScene& scene, const std::vector<double>& high_pass,
+                                   double bin_width_Hz) {
+  if (CalcRollingSpeed(scene, {.pipe = 0, .rolling_speed_m_s = 1}) == 0) return {};
+  std::vector<float> psd(high_pass.size(), 0);
+  for (std::size_t k = 1; k < psd.size(); ++k) {
+    psd[k] = static_cast<float>(
+        high_pass[k] * CalcRollingPsd(scene.ambient.rolling, 1, static_cast<double>(k) * bin_width_Hz));
   }
   return psd;
 }
@@ -56,6 +69,7 @@ ListenerSpectrum::ListenerSpectrum(const AcousticScene& scene, const HydrophoneP
                         TabulateHighPass(params, bin_width_Hz, bins)) {
   const std::vector<double> high_pass = TabulateHighPass(params, bin_width_Hz, bins);
   steady_ = TabulateSteady(scene, params, high_pass, bin_width_Hz);
+  rolling_ = TabulateRolling(scene, high_pass, bin_width_Hz);
   TabulateLosses(bin_width_Hz);
   TabulateLeaks(scene, high_pass, bin_width_Hz);
 }
@@ -81,6 +95,7 @@ void ListenerSpectrum::TabulateLeaks(const AcousticScene& scene, const std::vect
   for (const SoundingLeak& leak : scene.leaks) {
     LeakRow& row = leaks_.emplace_back();
     row.paths = FindPaths(pipes_, leak.place());
+    row.times = leak.times;
     row.psd.resize(bins());
     for (std::size_t k = 0; k < bins(); ++k) {
       const double f_Hz = static_cast<double>(k) * bin_width_Hz;
@@ -98,7 +113,8 @@ void ListenerSpectrum::Calc(const ListenerState& listener, std::span<float> psd)
                             listener.bore_radius_m);
   }
   if (listener.pipe != pipe_) EnterPipe(listener.pipe);
-  for (const LeakRow& leak : leaks_) AddLeak(leak, listener.place(), psd);
+  AddRolling(listener.rolling_speed_m_s, psd);
+  for (const LeakRow& leak : leaks_) AddLeak(leak, listener, psd);
 }
 
 void ListenerSpectrum::EnterPipe(int pipe) {
@@ -125,18 +141,29 @@ void ListenerSpectrum::TabulateWay(const PathTree& paths, int node, WayToEnd& wa
   }
 }
 
-void ListenerSpectrum::AddLeak(const LeakRow& leak, const PipePlace& place, std::span<float> psd) const {
+void ListenerSpectrum::AddRolling(double speed_m_s, std::span<float> psd) const {
+  if (rolling_.empty() || speed_m_s == 0) return;
+  const auto gain = static_cast<float>(speed_m_s * speed_m_s * speed_m_s);
+  for (std::size_t k = 1; k < bins(); ++k) psd[k] += gain * rolling_[k];
+}
+
+void ListenerSpectrum::AddLeak(const LeakRow& leak, const ListenerState& listener,
+                               std::span<float> psd) const {
+  const auto share = static_cast<float>(CalcPowerShare(leak.times, listener.time));
+  if (share == 0) return;
+  const PipePlace place = listener.place();
   const Arrival arrival = FindArrival(pipes_, leak.paths, place);
   if (arrival.way == WayIn::kNone) return;
   const WayToEnd& way = leak.ways[static_cast<std::size_t>(arrival.way)];
   const float* other = way.other_loss.data();
+  const auto local = static_cast<float>(2 * arrival.local_Np);
   const float* loss_1_m = power_loss_1_m_[wave_of_pipe_[static_cast<std::size_t>(place.pipe)]].data();
   const auto own_m = static_cast<float>(way.own_m + arrival.length_m);
   // losses grow with frequency: the first inaudible bin ends the row
   const std::size_t audible = FindFirstFailing(
-      1, bins(), [&](std::size_t k) { return other[k] + own_m * loss_1_m[k] < kInaudibleLoss; });
+      1, bins(), [&](std::size_t k) { return local + other[k] + own_m * loss_1_m[k] < kInaudibleLoss; });
   for (std::size_t k = 1; k < audible; ++k) {
-    psd[k] += leak.psd[k] * CalcDecay(other[k] + own_m * loss_1_m[k]);
+    psd[k] += share * leak.psd[k] * CalcDecay(local + other[k] + own_m * loss_1_m[k]);
   }
 }
 

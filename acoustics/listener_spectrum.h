@@ -33,7 +33,8 @@ class ListenerSpectrum {
   };
   struct LeakRow {
     PathTree paths;
-    std::vector<float> psd;        // at the hole, behind the input stage
+    std::vector<float> psd;  // at the hole, behind the input stage
+    SoundingTimes times;
     std::array<WayToEnd, 3> ways;  // by WayIn; the direct one stays empty
   };
 
@@ -42,7 +43,8 @@ class ListenerSpectrum {
   void TabulateLeaks(const AcousticScene& scene, const std::vector<double>& high_pass, double bin_width_Hz);
   void EnterPipe(int pipe);
   void TabulateWay(const PathTree& paths, int node, WayToEnd& way);
-  void AddLeak(const LeakRow& leak, const PipePlace& place, std::span<float> psd) const;
+  void AddLeak(const LeakRow& leak, const ListenerState& listener, std::span<float> psd) const;
+  void AddRolling(double speed_m_s, std::span<float> psd) const;
 
   std::vector<AcousticPipe> pipes_;
   std::vector<std::size_t> wave_of_pipe_;           // pipes of the same make share a row of losses
@@ -51,6 +53,7 @@ class ListenerSpectrum {
   std::vector<LeakRow> leaks_;
   int pipe_ = -1;  // the one that the leaks' ways lead to
   std::vector<float> steady_;
+  std::vector<float> rolling_;  // at 1 m/s; empty: none
   bool flow_noise_;
   FlowNoiseTable flow_noise_table_;
 };

@@ -18,6 +18,12 @@ const AcousticPipe& At(const std::vector<AcousticPipe>& pipes, int pipe) {
   return pipes[static_cast<std::size_t>(pipe)];
 }
 
+struct Stretch {
+  int pipe;
+  double s_1_m;
+  double s_2_m;
+};
+
 std::size_t CountNodes(const std::vector<AcousticPipe>& pipes) {
   int last = -1;
   for (const AcousticPipe& pipe : pipes) {
@@ -45,12 +51,12 @@ class PathSearch {
     const PipePlace& source = paths_.source;
     const AcousticPipe& own = At(pipes_, source.pipe);
     Demand(source.s_m >= 0 && source.s_m <= own.length_m, "a sound source lies within its pipe");
-    Offer(own.from_node, 0, source.pipe, source.s_m, -1);
-    Offer(own.to_node, 0, source.pipe, own.length_m - source.s_m, -1);
+    Offer(own.from_node, {}, {source.pipe, 0, source.s_m}, -1);
+    Offer(own.to_node, {}, {source.pipe, source.s_m, own.length_m}, -1);
     while (!queue_.empty()) {
       const auto [loss_Np, node] = queue_.top();
       queue_.pop();
-      if (loss_Np == AtNode(paths_.nodes, node).loss_Np) Expand(node, loss_Np);
+      if (loss_Np == AtNode(paths_.nodes, node).loss_Np) Expand(node);
     }
     return std::move(paths_);
   }
@@ -61,20 +67,29 @@ class PathSearch {
     return items[static_cast<std::size_t>(node)];
   }
 
-  void Expand(int node, double loss_Np) {
+  struct Loss {
+    double whole_Np = 0;
+    double local_Np = 0;
+  };
+
+  void Expand(int node) {
+    const PathStep step = AtNode(paths_.nodes, node);
     for (const int i : AtNode(pipes_at_, node)) {
       const AcousticPipe& pipe = At(pipes_, i);
       const int other = pipe.from_node == node ? pipe.to_node : pipe.from_node;
-      Offer(other, loss_Np, i, pipe.length_m, node);
+      Offer(other, {step.loss_Np, step.local_Np}, {i, 0, pipe.length_m}, node);
     }
   }
 
-  void Offer(int node, double loss_before_Np, int pipe, double length_m, int previous_node) {
-    const double alpha = At(pipes_, pipe).wave.Attenuation_Np_m(kPathFrequency_Hz);
-    const double loss_Np = loss_before_Np + alpha * length_m;
+  void Offer(int node, const Loss& before, const Stretch& stretch, int previous_node) {
+    const AcousticPipe& pipe = At(pipes_, stretch.pipe);
+    const double length_m = stretch.s_2_m - stretch.s_1_m;
+    const double local_Np = CalcLocalLoss_Np(pipe, stretch.s_1_m, stretch.s_2_m);
+    const double loss_Np =
+        before.whole_Np + pipe.wave.Attenuation_Np_m(kPathFrequency_Hz) * length_m + local_Np;
     PathStep& best = AtNode(paths_.nodes, node);
     if (!(loss_Np < best.loss_Np)) return;
-    best = {loss_Np, pipe, length_m, previous_node};
+    best = {loss_Np, stretch.pipe, length_m, previous_node, before.local_Np + local_Np};
     queue_.emplace(loss_Np, node);
   }
 
@@ -88,6 +103,16 @@ class PathSearch {
 
 }  // namespace
 
+double CalcLocalLoss_Np(const AcousticPipe& pipe, double s_1_m, double s_2_m) {
+  const auto [begin_m, end_m] = std::minmax(s_1_m, s_2_m);
+  double loss_Np = 0;
+  for (const LocalLoss& local : pipe.local_losses) {
+    const double shared_m = std::min(end_m, local.s_end_m) - std::max(begin_m, local.s_begin_m);
+    loss_Np += local.loss_Np_m * std::max(shared_m, 0.0);
+  }
+  return loss_Np;
+}
+
 PathTree FindPaths(const std::vector<AcousticPipe>& pipes, const PipePlace& source) {
   return PathSearch(pipes, source).Run();
 }
@@ -98,16 +123,21 @@ Arrival FindArrival(const std::vector<AcousticPipe>& pipes, const PathTree& path
   const double alpha = pipe.wave.Attenuation_Np_m(kPathFrequency_Hz);
   Arrival best;
   double least_Np = kNoWay;
-  const auto offer = [&](WayIn way, double loss_before_Np, double length_m) {
-    const double loss_Np = loss_before_Np + alpha * length_m;
+  const auto offer = [&](WayIn way, double before_Np, double local_before_Np, double from_s_m) {
+    const double length_m = std::abs(place.s_m - from_s_m);
+    const double local_Np = CalcLocalLoss_Np(pipe, from_s_m, place.s_m);
+    const double loss_Np = before_Np + alpha * length_m + local_Np;
     if (!(loss_Np < least_Np)) return;
     least_Np = loss_Np;
-    best = {way, length_m};
+    best = {way, length_m, local_before_Np + local_Np};
   };
-  const auto loss_at = [&](int node) { return paths.nodes[static_cast<std::size_t>(node)].loss_Np; };
-  if (place.pipe == paths.source.pipe) offer(WayIn::kDirect, 0, std::abs(place.s_m - paths.source.s_m));
-  offer(WayIn::kFromEnd, loss_at(pipe.from_node), std::abs(place.s_m));
-  offer(WayIn::kToEnd, loss_at(pipe.to_node), std::abs(pipe.length_m - place.s_m));
+  const auto offer_from = [&](WayIn way, int node, double from_s_m) {
+    const PathStep& step = paths.nodes[static_cast<std::size_t>(node)];
+    offer(way, step.loss_Np, step.local_Np, from_s_m);
+  };
+  if (place.pipe == paths.source.pipe) offer(WayIn::kDirect, 0, 0, paths.source.s_m);
+  offer_from(WayIn::kFromEnd, pipe.from_node, 0);
+  offer_from(WayIn::kToEnd, pipe.to_node, pipe.length_m);
   return best;
 }
 
@@ -116,7 +146,7 @@ double CalcPathLoss_Np(const std::vector<AcousticPipe>& pipes, const PathTree& p
   const Arrival arrival = FindArrival(pipes, paths, place);
   if (arrival.way == WayIn::kNone) return kNoWay;
   const AcousticPipe& last = At(pipes, place.pipe);
-  double loss_Np = arrival.length_m * last.wave.Attenuation_Np_m(f_Hz);
+  double loss_Np = arrival.local_Np + arrival.length_m * last.wave.Attenuation_Np_m(f_Hz);
   if (arrival.way == WayIn::kDirect) return loss_Np;
   const int node = arrival.way == WayIn::kFromEnd ? last.from_node : last.to_node;
   WalkBack(paths, node, [&](int pipe, double length_m) {

@@ -8,13 +8,24 @@
 
 namespace piperun::acoustics {
 
+/// A stretch of a pipe where sound of all frequencies loses more than by the pipe's wave.
+struct LocalLoss {
+  double s_begin_m = 0;
+  double s_end_m = 0;
+  double loss_Np_m = 0;
+};
+
 /// One pipe of a network as sound sees it: what it joins and the wave it carries.
 struct AcousticPipe {
   int from_node = 0;  ///< nodes are numbered from 0
   int to_node = 0;
   double length_m = 0;
   PipeWave wave;
+  std::vector<LocalLoss> local_losses{};
 };
+
+/// Loss by a pipe's local losses between two places in it, in either order, in Np.
+double CalcLocalLoss_Np(const AcousticPipe& pipe, double s_1_m, double s_2_m);
 
 /// A place in a network, s along the pipe from its `from` node. Beyond its ends (a ball's centre past a dead
 /// end) a pipe goes on as it is.
@@ -33,6 +44,7 @@ struct PathStep {
   int pipe = -1;                                             ///< the last one; -1: no way leads here
   double length_m = 0;                                       ///< of that pipe, as far as it is on the way
   int previous_node = -1;                                    ///< before that pipe; -1: the source lies in it
+  double local_Np = 0;                                       ///< by local losses, of the whole way
 };
 
 /// The ways of least loss from a source to all nodes.
@@ -54,6 +66,7 @@ enum class WayIn : std::size_t { kDirect, kFromEnd, kToEnd, kNone };
 struct Arrival {
   WayIn way = WayIn::kNone;
   double length_m = 0;  ///< in the pipe of the place
+  double local_Np = 0;  ///< by local losses, of the whole way
 };
 
 /// The arrival with the least loss at kPathFrequency_Hz; of equals the first of WayIn. kNone where no pipe
@@ -71,10 +84,11 @@ void WalkBack(const PathTree& paths, int node, Visit visit) {
 }
 
 /// Loss of the plane wave on its way from a source to a place: the sum over the way's pipes of alpha(f) times
-/// length, in Np; infinity where no way leads. The pressure falls to exp(-loss), the power to exp(-2 loss).
-/// Only the way of least loss at kPathFrequency_Hz counts, whatever f. The wave passes from pipe to pipe as
-/// if their impedances matched and nothing branched off: transmission, reflections, sums over several ways
-/// and the near field within a diameter of the hole belong to a field of the whole network and are not in it.
+/// length and of their local losses, in Np; infinity where no way leads. The pressure falls to exp(-loss),
+/// the power to exp(-2 loss). Only the way of least loss at kPathFrequency_Hz counts, whatever f. The wave
+/// passes from pipe to pipe as if their impedances matched and nothing branched off: transmission,
+/// reflections, sums over several ways and the near field within a diameter of the hole belong to a field of
+/// the whole network and are not in it.
 double CalcPathLoss_Np(const std::vector<AcousticPipe>& pipes, const PathTree& paths, const PipePlace& place,
                        double f_Hz);
 
