@@ -31,8 +31,8 @@ void RecordFaultParams::Visit(ParamVisitor& v) {
   v.Items({.name = "gain_steps", .doc = "when the amplifier changes its gain, without saying so"},
           gain_steps);
   v.Items({.name = "drop_outs", .doc = "spans in which no sample is recorded: zeros stand there"}, drop_outs);
-  v.Number({.name = "drop_outs_per_h", .doc = "how many more there are, at times drawn by seed and run"},
-           Range::Between(0, 3600), drop_outs_per_h);
+  v.Number({.name = "drop_outs_1_h", .doc = "how many more there are, at times drawn by seed and run"},
+           Range::Between(0, 3600), drop_outs_1_h);
   v.Number({.name = "drop_out_s", .doc = "length of those"}, {.min = 0, .max = 1, .min_open = true},
            drop_out_s);
 }
@@ -55,7 +55,7 @@ void RecordFaultParams::Check() const {
 RecordFaults::RecordFaults(const RecordFaultParams& params, Rate rate, const RandomStream& random)
     : rate_Hz_(std::llround(rate.Hz())),
       random_(random),
-      drop_outs_per_s_(params.drop_outs_per_h / 3600),
+      drop_outs_per_s_(params.drop_outs_1_h / 3600),
       drop_out_s_(params.drop_out_s) {
   params.Check();
   for (const GainStep& step : params.gain_steps) {

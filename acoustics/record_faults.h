@@ -30,7 +30,7 @@ struct DropOut {
 struct RecordFaultParams {
   std::vector<GainStep> gain_steps;
   std::vector<DropOut> drop_outs;
-  double drop_outs_per_h = 0;  ///< at times drawn by seed and run
+  double drop_outs_1_h = 0;  ///< at times drawn by seed and run
   double drop_out_s = 0.05;    ///< length of those
 
   void Visit(ParamVisitor& v);

@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "base/number.h"
 #include "scenarios/network_params.h"
+#include "scenarios/sound_list.h"
 
 namespace piperun::scenarios {
 namespace {
@@ -61,6 +62,9 @@ void BuildScene(const Scenario& scenario, Assembly& assembly) {
     scene.leaks.push_back({leak.id, leak.pipe, leak.s_m,
                            kind.make(sound.params(), leak.hole_diameter_m, pipeline.leak_states[i],
                                      assembly.water.density_kg_m3)});
+  }
+  for (std::string& note : AddSounds(scenario, pipeline, scene)) {
+    assembly.pipeline->notes.push_back(std::move(note));
   }
 }
 
@@ -151,6 +155,8 @@ std::unique_ptr<Assembly> Build(const Scenario& scenario) {
     BuildWay(scenario, *assembly);
   } else if (!scenario.leaks.empty() || scenario.random_leaks.count > 0) {
     throw InputError("a leak needs a pipe, and this scenario has no network", "leaks");
+  } else if (!scenario.sounds.empty()) {
+    throw InputError("a sound needs a pipe, and this scenario has no network", "sounds");
   } else if (!scenario.wall_features.empty()) {
     throw InputError("a wall feature needs a pipe, and this scenario has no network", "wall_features");
   }

@@ -92,6 +92,19 @@ struct LeakEntry {
   void Visit(ParamVisitor& v);
 };
 
+/// Something that sounds and is no leak.
+struct SoundEntry {
+  std::string id;
+  std::string pipe;
+  double s_m = 0;
+  std::string node;             ///< instead of pipe and s_m
+  std::optional<double> on_s;   ///< nothing: from the beginning
+  std::optional<double> off_s;  ///< nothing: to the end
+  double ramp_s = 0.1;
+  KindEntry kind{SoundOptions, "draw_off"};
+  void Visit(ParamVisitor& v);
+};
+
 /// Something on the wall that the ball runs into; or many of them.
 struct WallFeatureEntry {
   std::string id;
@@ -198,6 +211,7 @@ struct Scenario {
   acoustics::AmbientParams ambient;
   std::vector<LeakEntry> leaks;
   RandomLeaksParams random_leaks;
+  std::vector<SoundEntry> sounds;
   std::vector<WallFeatureEntry> wall_features;
   KindEntry motion{MotionOptions, "ball_in_pipe"};
   BallEntry ball;

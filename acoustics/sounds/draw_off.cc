@@ -1,6 +1,6 @@
 #include <numbers>
 
-#include "acoustics/jet.h"
+#include "acoustics/jet_sound.h"
 #include "acoustics/sound.h"
 #include "base/check.h"
 #include "base/number.h"
@@ -37,22 +37,13 @@ void RequirePossible(const DrawOffParams& p, const SoundSite& site) {
 /// A tap, hydrant or service that draws water: the jet of acoustics/jet.h with the flow and the opening given
 /// and the pipe's pressure, all of it lost in the opening. The service line between main and tap is left out.
 /// As uncertain as a leak's level, 15 dB either way: it is the false alarm a leak detector has to live with.
-class DrawOff : public LeakSound {
- public:
-  explicit DrawOff(const JetSpectrum& jet) : jet_(jet) {}
-  double VolumeVelocityPsd(double f_Hz) const override { return jet_(f_Hz); }
-
- private:
-  JetSpectrum jet_;
-};
-
 SiteSound Make(const Params& params, const SoundSite& site) {
   const auto& p = dynamic_cast<const DrawOffParams&>(params);
   if (!(site.gauge_pressure_Pa > 0)) return {};
   RequirePossible(p, site);
   const JetSpectrum jet(p.jet, p.opening_diameter_m, {p.flow_m3_s, site.gauge_pressure_Pa},
                         site.water.density_kg_m3);
-  return {.noise = std::make_shared<DrawOff>(jet), .role = Role::kDrawOff};
+  return {.noise = std::make_shared<JetSound>(jet), .role = Role::kDrawOff};
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ constexpr int kSizes = 64;          // 2.8 % apart from 0.5 to 3 mm: below the w
 struct GasPocketParams : ParamsOf<GasPocketParams> {
   double length_m = 2;
   double loss_dB_m = 3;
-  double bubbles_per_s = 20;
+  double bubble_rate_Hz = 20;
   double min_radius_m = 5e-4;
   double max_radius_m = 3e-3;
   double relative_amplitude = 3e-4;
@@ -26,8 +26,8 @@ struct GasPocketParams : ParamsOf<GasPocketParams> {
              {.min = 0, .max = 1000, .min_open = true}, length_m);
     v.Number({.name = "loss_dB_m", .doc = "extra loss of sound along that stretch, at all frequencies"},
              Range::Between(0, 1000), loss_dB_m);
-    v.Number({.name = "bubbles_per_s", .doc = "how many bubbles break off and ring; 0: no hiss"},
-             Range::Between(0, 1e6), bubbles_per_s);
+    v.Number({.name = "bubble_rate_Hz", .doc = "how many bubbles break off and ring; 0: no hiss"},
+             Range::Between(0, 1e6), bubble_rate_Hz);
     v.Number({.name = "min_radius_m", .doc = "of the smallest bubble; radii are log-uniform"},
              Range::Between(1e-5, 0.1), min_radius_m);
     v.Number({.name = "max_radius_m", .doc = "of the largest bubble"}, Range::Between(1e-5, 0.1),
@@ -49,7 +49,7 @@ struct GasPocketParams : ParamsOf<GasPocketParams> {
 class BubbleHiss : public LeakSound {
  public:
   BubbleHiss(const GasPocketParams& p, const SoundSite& site)
-      : bubbles_per_s_(p.bubbles_per_s), damping_(p.damping) {
+      : bubble_rate_Hz_(p.bubble_rate_Hz), damping_(p.damping) {
     const double pressure_Pa = kAtmosphere_Pa + site.gauge_pressure_Pa;
     const double speed_m_s = std::sqrt(3 * kHeatRatio * pressure_Pa / site.water.density_kg_m3);
     for (int i = 0; i < kSizes; ++i) {
@@ -69,7 +69,7 @@ class BubbleHiss : public LeakSound {
       const double detuning = w2 * (1 + d2 / 4) - W2;
       sum += size.peak_m3_s * size.peak_m3_s * w2 / (detuning * detuning + d2 * w2 * W2);
     }
-    return 2 * bubbles_per_s_ * sum / kSizes;
+    return 2 * bubble_rate_Hz_ * sum / kSizes;
   }
 
  private:
@@ -77,7 +77,7 @@ class BubbleHiss : public LeakSound {
     double w_rad_s;
     double peak_m3_s;
   };
-  double bubbles_per_s_;
+  double bubble_rate_Hz_;
   double damping_;
   std::vector<Size> sizes_;
 };
@@ -92,7 +92,7 @@ SiteSound Make(const Params& params, const SoundSite& site) {
   sound.role = Role::kGasPocket;
   sound.loss_length_m = p.length_m;
   sound.loss_Np_m = p.loss_dB_m * std::numbers::ln10 / 20;
-  if (p.bubbles_per_s > 0) sound.noise = std::make_shared<BubbleHiss>(p, site);
+  if (p.bubble_rate_Hz > 0) sound.noise = std::make_shared<BubbleHiss>(p, site);
   return sound;
 }
 

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "acoustics/jet.h"
+#include "acoustics/jet_sound.h"
 #include "acoustics/sound.h"
 
 namespace piperun::acoustics::sounds::throttled_valve {
@@ -25,15 +25,6 @@ struct ThrottledValveParams : ParamsOf<ThrottledValveParams> {
 /// passes just that, d = (4 Q / (pi U))^(1/2), U = (2 dP / rho)^(1/2). Its noise is taken to enter the pipe
 /// as volume velocity, as a leak's does, and the valve to let sound pass; of an in-line throttle, whose drop
 /// drives the two sides against each other, that is the order of magnitude only (15 dB).
-class ThrottledValve : public LeakSound {
- public:
-  explicit ThrottledValve(const JetSpectrum& jet) : jet_(jet) {}
-  double VolumeVelocityPsd(double f_Hz) const override { return jet_(f_Hz); }
-
- private:
-  JetSpectrum jet_;
-};
-
 SiteSound Make(const Params& params, const SoundSite& site) {
   const auto& p = dynamic_cast<const ThrottledValveParams&>(params);
   const LeakState state{p.flow_m3_s.value_or(site.flow_m3_s), p.pressure_drop_Pa};
@@ -41,7 +32,7 @@ SiteSound Make(const Params& params, const SoundSite& site) {
   const double density_kg_m3 = site.water.density_kg_m3;
   const double area_m2 = state.flow_m3_s / CalcJetSpeed_m_s(state.pressure_drop_Pa, density_kg_m3);
   const JetSpectrum jet(p.jet, std::sqrt(4 * area_m2 / std::numbers::pi), state, density_kg_m3);
-  return {.noise = std::make_shared<ThrottledValve>(jet), .role = Role::kValve};
+  return {.noise = std::make_shared<JetSound>(jet), .role = Role::kValve};
 }
 
 }  // namespace
