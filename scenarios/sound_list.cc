@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acoustics/hydrophone.h"
 #include "acoustics/sound.h"
 #include "base/check.h"
 #include "base/number.h"
