@@ -78,6 +78,15 @@ acoustics::SiteSound MakeSound(const SoundEntry& entry, const acoustics::SoundSi
   }
 }
 
+void RequireWithinPipe(const acoustics::SiteSound& sound, const acoustics::PipePlace& place,
+                       double pipe_length_m, const std::string& key) {
+  const double room_m = 2 * std::min(place.s_m, pipe_length_m - place.s_m);
+  if (sound.loss_length_m <= room_m) return;
+  throw InputError(FormatNumber(sound.loss_length_m) + " is not allowed; centred here, at most " +
+                       FormatDigits(room_m, 6) + " m lie within the pipe: give each pipe a pocket of its own",
+                   key + ".length_m");
+}
+
 void Add(acoustics::SiteSound sound, const std::string& id, const acoustics::PipePlace& place,
          const acoustics::SoundingTimes& times, acoustics::AcousticScene& scene) {
   if (sound.loss_Np_m > 0) {
@@ -143,6 +152,7 @@ std::vector<std::string> AddSounds(const Scenario& scenario, const Pipeline& pip
     const acoustics::SoundingTimes times = MakeTimes(entry, key);
     acoustics::SiteSound sound =
         MakeSound(entry, FindSite(pipeline, scene, place, scenario.gravity_m_s2), key);
+    RequireWithinPipe(sound, place, pipeline.network.pipe(place.pipe).length_m, key);
     if (!sound.noise && sound.tones.empty() && sound.loss_Np_m == 0) {
       notes.push_back("sound '" + entry.id + "' is silent: no water flows, or no pressure drives it");
     }

@@ -82,6 +82,8 @@ TEST(SoundList, WhatDoesNotFitIsRefusedWithItsKey) {
   EXPECT_EQ(Refused("{id: T, pipe: P1, s_m: 7, kind: pump}").key, "sounds[0].s_m");
   EXPECT_EQ(Refused("{id: L1, pipe: P1, s_m: 2, kind: pump}").key, "sounds[0].id");
   EXPECT_EQ(Refused("{id: T, pipe: P1, s_m: 2, kind: pump, on_s: 5, off_s: 4}").key, "sounds[0].off_s");
+  EXPECT_EQ(Refused("{id: T, pipe: P1, s_m: 5.5, kind: gas_pocket, length_m: 1.1}").key,
+            "sounds[0].length_m");
   EXPECT_EQ(Refused("{id: T, pipe: P1, s_m: 2, kind: draw_off, flow_L_s: 50}").key, "sounds[0].flow_m3_s");
   EXPECT_EQ(Refused("{id: T, pipe: P1, s_m: 2, kind: pump, speed_rpm: 90000}").key,
             "sensors.hydrophone0.rate_Hz");
