@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "base/nearest_name.h"
 #include "base/number.h"
 #include "base/pipe_layout.h"
 
@@ -54,14 +55,18 @@ void RequireConeFits(const Cone& cone, const CentrelinePiece& at_end, double fre
                    key + ".length_m");
 }
 
-int ResolveNode(const IdIndex& nodes, const std::string& id, const std::string& key) {
-  const auto node = FindId(nodes, id);
-  if (!node) throw InputError("there is no node '" + id + "'", key);
-  return *node;
+int RequireId(const std::string& what, const IdIndex& index, const std::string& id, const std::string& key) {
+  if (const auto found = FindId(index, id)) return *found;
+  std::vector<std::string> known;
+  for (const auto& [name, number] : index) known.push_back(name);
+  std::string problem = "there is no " + what + " '" + id + "'";
+  if (const auto near = FindNearestName(id, known)) problem += "; did you mean '" + *near + "'?";
+  throw InputError(problem, key);
 }
 
 PipeNodes ResolveNodes(const IdIndex& nodes, const PipeSpec& spec, const std::string& key) {
-  const PipeNodes at{ResolveNode(nodes, spec.from, key + ".from"), ResolveNode(nodes, spec.to, key + ".to")};
+  const PipeNodes at{RequireId("node", nodes, spec.from, key + ".from"),
+                     RequireId("node", nodes, spec.to, key + ".to")};
   if (at.from != at.to) return at;
   throw InputError("the pipe leads from '" + spec.from + "' to itself; give its far end a node of its own",
                    key + ".to");
@@ -160,5 +165,13 @@ Network::Network(std::vector<NodeSpec> nodes, const std::vector<PipeSpec>& pipes
 
 std::optional<int> Network::FindNode(std::string_view id) const { return FindId(node_index_, id); }
 std::optional<int> Network::FindPipe(std::string_view id) const { return FindId(pipe_index_, id); }
+
+int Network::RequireNode(const std::string& id, const std::string& key_path) const {
+  return RequireId("node", node_index_, id, key_path);
+}
+
+int Network::RequirePipe(const std::string& id, const std::string& key_path) const {
+  return RequireId("pipe", pipe_index_, id, key_path);
+}
 
 }  // namespace piperun

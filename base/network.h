@@ -97,6 +97,10 @@ class Network {
   const Pipe& pipe(int i) const { return pipes_[static_cast<std::size_t>(i)]; }
   std::optional<int> FindNode(std::string_view id) const;
   std::optional<int> FindPipe(std::string_view id) const;
+  /// The same of names that a user gave; InputError at `key_path`, with the nearest name, where there is
+  /// none.
+  int RequireNode(const std::string& id, const std::string& key_path) const;
+  int RequirePipe(const std::string& id, const std::string& key_path) const;
   /// Pipes that begin or end at a node.
   const std::vector<PipeEnd>& EndsAt(int node) const { return ends_[static_cast<std::size_t>(node)]; }
   int NodeAt(PipeEnd end) const { return end.at_to ? pipe(end.pipe).to : pipe(end.pipe).from; }

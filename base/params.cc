@@ -10,10 +10,10 @@ std::string Range::Text() const {
   const bool low = std::isfinite(min), high = std::isfinite(max);
   if (!low && !high) return "any number";
   if (low && high) {
-    return (min_open ? "(" : "[") + FormatNumber(min) + ", " + FormatNumber(max) + (max_open ? ")" : "]");
+    return std::string(min_open ? "(" : "[") + FormatNumber(min) + ", " + FormatNumber(max) + (max_open ? ")" : "]");
   }
-  if (low) return (min_open ? "> " : ">= ") + FormatNumber(min);
-  return (max_open ? "< " : "<= ") + FormatNumber(max);
+  if (low) return std::string(min_open ? "> " : ">= ") + FormatNumber(min);
+  return std::string(max_open ? "< " : "<= ") + FormatNumber(max);
 }
 
 void ParamVisitor::Matrix(const ParamInfo& info, const Range& range, Matrix3d& value) {

@@ -18,13 +18,13 @@ std::int64_t CalcStride(std::int64_t samples, std::int64_t full_overlap) {
   return static_cast<std::int64_t>(std::bit_floor(static_cast<std::uint64_t>(samples / kFewestStrides)));
 }
 
-/// Sum of (late - 2 middle + early)^2 over n entries. Four sums, so that additions do not wait for each
+/// Sum of (late - 2 middle + early)^2 over n entries. Eight sums, so that additions do not wait for each
 /// other.
 double SumSquaredDifferences(const double* late, const double* middle, const double* early, std::size_t n) {
-  double sum[4] = {0, 0, 0, 0};
+  double sum[8] = {};
   std::size_t i = 0;
-  for (; i + 4 <= n; i += 4) {
-    for (std::size_t j = 0; j < 4; ++j) {
+  for (; i + 8 <= n; i += 8) {
+    for (std::size_t j = 0; j < 8; ++j) {
       const double d = (late[i + j] - middle[i + j]) - (middle[i + j] - early[i + j]);
       sum[j] += d * d;
     }
@@ -33,7 +33,7 @@ double SumSquaredDifferences(const double* late, const double* middle, const dou
     const double d = (late[i] - middle[i]) - (middle[i] - early[i]);
     sum[0] += d * d;
   }
-  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
 }
 
 constexpr int kBinsPerOctaveBits = 5;

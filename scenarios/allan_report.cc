@@ -66,11 +66,6 @@ Json TimingJson(const RecordTiming& t) {
           {"corrupt_rows", t.corrupt.count}};
 }
 
-bool HasGroup(const AllanAnalysis& analysis, const std::string& group) {
-  return std::any_of(analysis.channels.begin(), analysis.channels.end(),
-                     [&](const AllanChannel& c) { return c.group == group; });
-}
-
 /// "key: value", or the bound with a comment where there is no value.
 std::string KalibrLine(const AllanAnalysis& analysis, const std::string& key, const std::string& group,
                        NoiseTerm term) {
@@ -107,12 +102,14 @@ std::string WriteAllanJson(const AllanAnalysis& analysis) {
   return json.dump(1) + "\n";
 }
 
-std::string WriteKalibrYaml(const AllanAnalysis& analysis) {
-  for (const char* group : {"gyro", "accel"}) {
-    if (!HasGroup(analysis, group))
-      throw InputError("Kalibr's file wants gyro and accel; there is no '" + std::string(group) + "'",
-                       "--kalibr");
+void RequireKalibrGroups(const std::vector<RecordGroup>& groups) {
+  for (const std::string name : {"gyro", "accel"}) {
+    if (std::none_of(groups.begin(), groups.end(), [&](const RecordGroup& g) { return g.name == name; }))
+      throw InputError("Kalibr's file wants gyro and accel; there is no '" + name + "'", "--kalibr");
   }
+}
+
+std::string WriteKalibrYaml(const AllanAnalysis& analysis) {
   return "# Fitted by piperun allan. Units: rad, m, s, Hz. Random walks are those of the bias.\n" +
          KalibrLine(analysis, "accelerometer_noise_density", "accel", NoiseTerm::kWhite) +
          KalibrLine(analysis, "accelerometer_random_walk", "accel", NoiseTerm::kRateRandomWalk) +

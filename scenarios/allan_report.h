@@ -9,9 +9,12 @@ namespace piperun::scenarios {
 /// Everything that is known, SI: channels with terms, intervals, points of the deviation and notes.
 std::string WriteAllanJson(const AllanAnalysis& analysis);
 
+/// Throws InputError unless a record holds what Kalibr's file wants.
+void RequireKalibrGroups(const std::vector<RecordGroup>& groups);
+
 /// Kalibr's imu.yaml: densities and random walks of gyroscope and accelerometer, root mean square over the
-/// axes. Where a random walk is not identifiable its upper bound is written and a comment says so. Throws
-/// InputError when gyro or accel is missing or its white noise is not identifiable.
+/// axes. Where a random walk is not identifiable its upper bound is written and a comment says so. Of a
+/// record that has both. Throws InputError when the white noise of one is not identifiable.
 std::string WriteKalibrYaml(const AllanAnalysis& analysis);
 
 /// A preset of sensors (scenarios/sensor_presets.h) whose section imu has the fitted noise: Q, N, B, K, R

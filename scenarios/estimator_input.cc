@@ -54,11 +54,8 @@ ToldParams Tell(const StartParams& start, const Scenario& scenario, const Assemb
 std::vector<RouteLeg> MakeLegs(const Network& network, const std::vector<MapLeg>& way) {
   std::vector<RouteLeg> legs;
   for (std::size_t i = 0; i < way.size(); ++i) {
-    const auto pipe = network.FindPipe(way[i].pipe);
-    if (!pipe) {
-      throw InputError("there is no pipe '" + way[i].pipe + "'", "map.way[" + std::to_string(i) + "].pipe");
-    }
-    legs.push_back({*pipe, way[i].reversed});
+    const std::string key = "map.way[" + std::to_string(i) + "].pipe";
+    legs.push_back({network.RequirePipe(way[i].pipe, key), way[i].reversed});
   }
   if (legs.empty()) throw InputError("the way through the map is missing", "map.way");
   return legs;

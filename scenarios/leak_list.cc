@@ -14,9 +14,8 @@ namespace {
 constexpr int kMaxDraws = 10000;  // per leak, before we say that there is no room
 
 Leak MakeLeak(const LeakEntry& entry, const Network& network, const std::string& key) {
-  const auto pipe = network.FindPipe(entry.pipe);
-  if (!pipe) throw InputError("there is no pipe '" + entry.pipe + "'", key + ".pipe");
-  const Pipe& on = network.pipe(*pipe);
+  const int pipe = network.RequirePipe(entry.pipe, key + ".pipe");
+  const Pipe& on = network.pipe(pipe);
   if (entry.s_m > on.length_m) {
     throw InputError(FormatNumber(entry.s_m) + " is beyond the end of pipe '" + on.id + "'; allowed: [0, " +
                          FormatNumber(on.length_m) + "]",
@@ -26,7 +25,7 @@ Leak MakeLeak(const LeakEntry& entry, const Network& network, const std::string&
     throw InputError("the hole is wider than the pipe; allowed: below " + FormatNumber(on.diameter_m) + " m",
                      key + ".hole_diameter_m");
   }
-  return {entry.id, *pipe, entry.s_m, entry.hole_diameter_m, entry.cd, entry.area_slope_m};
+  return {entry.id, pipe, entry.s_m, entry.hole_diameter_m, entry.cd, entry.area_slope_m};
 }
 
 /// Stretches of pipe to draw from, end to end.

@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "base/check.h"
+#include "base/nearest_name.h"
 #include "scenarios/embedded.h"
-#include "scenarios/nearest_name.h"
 #include "scenarios/output_file.h"
 #include "scenarios/yaml_document.h"
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/check.h"
-#include "scenarios/nearest_name.h"
 
 namespace piperun::scenarios {
 namespace {
@@ -56,12 +55,7 @@ Network MakeNetwork(const NetworkParams& params) {
 
 int ResolveNode(const Network& network, const std::string& id, const std::string& key_path) {
   if (id.empty()) throw InputError("the node is missing; name a node of the network", key_path);
-  if (const auto node = network.FindNode(id)) return *node;
-  std::vector<std::string> known;
-  for (const NodeSpec& node : network.nodes()) known.push_back(node.id);
-  std::string problem = "there is no node '" + id + "'";
-  if (const auto near = FindNearestName(id, known)) problem += "; did you mean '" + *near + "'?";
-  throw InputError(problem, key_path);
+  return network.RequireNode(id, key_path);
 }
 
 }  // namespace piperun::scenarios

@@ -12,7 +12,8 @@
 namespace piperun::scenarios {
 namespace {
 
-/// Indices given out one by one, and the first thing that went wrong.
+/// Indices given out one by one, and what went wrong at the lowest index: whatever the threads, the same one,
+/// as all lower ones have been given out before.
 class WorkList {
  public:
   WorkList(int count, const std::atomic<bool>* stop, const std::function<void(int)>& work)
@@ -25,7 +26,7 @@ class WorkList {
         ++done_;
       } catch (...) {
         const std::lock_guard lock(mutex_);
-        if (!error_) error_ = std::current_exception();
+        if (!error_ || i < error_index_) error_ = std::current_exception(), error_index_ = i;
         failed_ = true;
       }
     }
@@ -50,6 +51,7 @@ class WorkList {
   std::atomic<bool> failed_{false};
   std::mutex mutex_;
   std::exception_ptr error_;
+  int error_index_ = 0;
 };
 
 }  // namespace

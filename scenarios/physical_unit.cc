@@ -6,14 +6,15 @@
 #include <numbers>
 
 #include "base/check.h"
+#include "base/nearest_name.h"
 #include "base/number.h"
-#include "scenarios/nearest_name.h"
 
 namespace piperun::scenarios {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kGravity_m_s2 = 9.80665;
+constexpr double kPsi_Pa = 0.45359237 * kGravity_m_s2 / (0.0254 * 0.0254);  // pound-force to the square inch
 
 struct NamedUnit {
   std::string_view name;
@@ -51,6 +52,7 @@ const NamedUnit kUnits[] = {
     {"mT", {1e-3, {0, 0, 0, 1}}},
     {"uT", {1e-6, {0, 0, 0, 1}}},
     {"nT", {1e-9, {0, 0, 0, 1}}},
+    {"gauss", {1e-4, {0, 0, 0, 1}}},
     {"G", {1e-4, {0, 0, 0, 1}}},
     {"mG", {1e-7, {0, 0, 0, 1}}},
     {"Pa", {1, {0, 0, 0, 0, 1}}},
@@ -58,8 +60,11 @@ const NamedUnit kUnits[] = {
     {"kPa", {1e3, {0, 0, 0, 0, 1}}},
     {"mbar", {1e2, {0, 0, 0, 0, 1}}},
     {"bar", {1e5, {0, 0, 0, 0, 1}}},
+    {"psi", {kPsi_Pa, {0, 0, 0, 0, 1}}},
     {"uPa", {1e-6, {0, 0, 0, 0, 1}}},
     {"K", {1, {0, 0, 0, 0, 0, 1}}},
+    {"mK", {1e-3, {0, 0, 0, 0, 0, 1}}},
+    // of differences and spreads: a sensor's temperature itself is never converted
     {"degC", {1, {0, 0, 0, 0, 0, 1}}},
 };
 

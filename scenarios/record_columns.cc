@@ -4,8 +4,8 @@
 #include <charconv>
 
 #include "base/check.h"
+#include "base/nearest_name.h"
 #include "base/number.h"
-#include "scenarios/nearest_name.h"
 #include "scenarios/physical_unit.h"
 #include "scenarios/record_unit.h"
 

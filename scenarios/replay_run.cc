@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "base/nearest_name.h"
 #include "estimator/filter_kind.h"
 #include "scenarios/estimator_bank.h"
 #include "scenarios/load.h"
-#include "scenarios/nearest_name.h"
 #include "scenarios/output_file.h"
 #include "scenarios/replay.h"
 #include "scenarios/run.h"

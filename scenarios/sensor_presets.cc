@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "base/nearest_name.h"
 #include "scenarios/embedded.h"
-#include "scenarios/nearest_name.h"
 #include "scenarios/output_file.h"
 #include "scenarios/yaml_document.h"
 
@@ -56,7 +56,7 @@ std::string Quoted(const std::string& text) {
   for (const SensorPreset& board : SensorPresets()) known.push_back(board.name);
   std::string problem = "there is no sensor preset '" + preset + "', and no such file";
   if (const auto near = FindNearestName(preset, known)) problem += "; did you mean '" + *near + "'?";
-  problem += " known:";
+  problem += problem.ends_with('?') ? " Known:" : "; known:";
   for (const std::string& name : known) problem += " " + name;
   throw InputError(problem, "preset");
 }

@@ -278,6 +278,20 @@ class AudioRecord final : public StaticRecord {
   std::array<std::int32_t, kBlock> counts_{};
 };
 
+/// A recording tells its rate and holds one column; what a CSV file may need told is a mistake here.
+void RefuseCsvOptions(const StaticRecordOptions& options) {
+  const std::pair<bool, const char*> given[] = {{options.rate_Hz.has_value(), "--rate"},
+                                                {!options.columns.empty(), "--columns"},
+                                                {!options.time_column.empty(), "--time-column"},
+                                                {!options.time_unit.empty(), "--time-unit"}};
+  for (const auto& [is_given, option] : given) {
+    if (is_given)
+      throw InputError("a WAV or FLAC file has its own rate and one column; leave this out", option);
+  }
+  if (!(options.full_scale > 0 && std::isfinite(options.full_scale)))
+    throw InputError(FormatNumber(options.full_scale) + " is out of range; allowed: above 0", "--full-scale");
+}
+
 /// The record within a folder.
 std::filesystem::path FindRecordFile(const std::filesystem::path& path) {
   if (!std::filesystem::is_directory(path)) return path;
@@ -322,6 +336,7 @@ std::unique_ptr<StaticRecord> OpenStaticRecord(const std::filesystem::path& path
   const std::string extension = file.extension().string();
   std::unique_ptr<StaticRecord> record;
   if (extension == ".wav" || extension == ".flac") {
+    RefuseCsvOptions(options);
     record = std::make_unique<AudioRecord>(file, options);
   } else {
     record = std::make_unique<CsvRecord>(file, options);

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "base/check.h"
-#include "scenarios/nearest_name.h"
 #include "scenarios/network_params.h"
 
 namespace piperun::scenarios {
@@ -15,12 +14,11 @@ constexpr std::string_view kEveryPipe = "*";
 bool IsOpen(const sim::Bore& bore, int pipe) { return bore.open(pipe) && bore.network().pipe(pipe).passable; }
 
 int FindPipe(const Network& network, const std::string& id) {
-  if (const auto pipe = network.FindPipe(id)) return *pipe;
-  std::vector<std::string> known;
-  for (const Pipe& pipe : network.pipes()) known.push_back(pipe.id);
-  std::string problem = "there is no pipe '" + id + "'";
-  if (const auto near = FindNearestName(id, known)) problem += "; did you mean '" + *near + "'?";
-  throw InputError(problem + "; \"*\" stands for every pipe open to the ball", "pipe");
+  try {
+    return network.RequirePipe(id, "pipe");
+  } catch (const InputError& e) {
+    throw InputError(e.problem() + "; \"*\" stands for every pipe open to the ball", "pipe");
+  }
 }
 
 std::vector<int> FindPipes(const sim::Bore& bore, const std::string& id) {

@@ -6,9 +6,9 @@
 #include <charconv>
 
 #include "base/check.h"
+#include "base/nearest_name.h"
 #include "base/number.h"
 #include "scenarios/key_path.h"
-#include "scenarios/nearest_name.h"
 #include "scenarios/output_file.h"
 #include "scenarios/unit_alias.h"
 #include "scenarios/yaml_document.h"

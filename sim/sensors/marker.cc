@@ -72,15 +72,32 @@ struct Receiver {
 };
 
 int FindPipe(const SensorContext& context, const ReceiverParams& params) {
-  const auto index = context.network->FindPipe(params.pipe);
-  if (!index) throw InputError("there is no pipe '" + params.pipe + "'", "pipe");
-  const Pipe& pipe = context.network->pipe(*index);
+  const int index = context.network->RequirePipe(params.pipe, "pipe");
+  const Pipe& pipe = context.network->pipe(index);
   if (params.s_m > pipe.length_m) {
     throw InputError(FormatNumber(params.s_m) + " m is beyond the end of pipe '" + pipe.id +
                          "'; allowed: [0, " + FormatNumber(pipe.length_m) + "] m",
                      "s_m");
   }
-  return *index;
+  return index;
+}
+
+void RequireHearing(const ReceiverParams& receiver, double range_m) {
+  const double distance_m = std::hypot(receiver.cover_m, receiver.aside_m);
+  if (distance_m < range_m) return;
+  throw InputError("it stands " + FormatDigits(distance_m, 4) + " m from its pipe's axis and hears up to " +
+                       FormatNumber(range_m) + " m: no ball ever; place it nearer or raise range_m",
+                   std::abs(receiver.aside_m) > receiver.cover_m ? "aside_m" : "cover_m");
+}
+
+void RefuseTwins(const std::vector<ReceiverParams>& receivers) {
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    const auto same = [&](const ReceiverParams& other) { return other.id == receivers[i].id; };
+    const auto end = receivers.begin() + static_cast<std::ptrdiff_t>(i);
+    if (receivers[i].id.empty() || std::none_of(receivers.begin(), end, same)) continue;
+    throw InputError("two receivers are called '" + receivers[i].id + "'; give each a name of its own",
+                     "receivers[" + std::to_string(i) + "].id");
+  }
 }
 
 /// Above and beside the pipe's axis as it is drawn.
@@ -140,6 +157,7 @@ class MarkerSensor final : public Sensor {
     const auto survey = context_.random.Normals(Draw(i, 0), kSurveySlot);
     try {
       const int pipe = FindPipe(context_, params_.receivers[i]);
+      RequireHearing(params_.receivers[i], params_.range_m);
       const Vector3d p_W = FindPlace(context_.network->pipe(pipe), params_.receivers[i]);
       return {pipe,
               p_W,
@@ -210,6 +228,7 @@ std::unique_ptr<Sensor> Make(const Params& params, const SensorContext& context)
   if (!context.network)
     throw InputError("a marker stands above a pipe, and this scenario has no network", "");
   if (p.receivers.empty()) throw InputError("there is no receiver; state one: {pipe, s_m}", "receivers");
+  RefuseTwins(p.receivers);
   return std::make_unique<MarkerSensor>(p, context);
 }
 

@@ -66,10 +66,6 @@ TEST(Marker, LogsTheClosestApproachToEveryReceiver) {
   EXPECT_TRUE(log[1].p_W.isApprox(Vector3d(4, 0, 1.5)));
 }
 
-TEST(Marker, HearsNothingBeyondItsRange) {
-  EXPECT_TRUE(Record("range_m: 0.9, receivers: [{pipe: P1, s_m: 3, cover_m: 1}]").empty());
-}
-
 TEST(Marker, ClocksAndJitterSpreadTheStamps) {
   constexpr int kRuns = 400;
   const auto log = Record("clock_offset_sd_s: 0.3, jitter_sd_s: 0.4, receivers: [{pipe: P1, s_m: 3}]", kRuns);
@@ -122,6 +118,10 @@ TEST(Marker, RefusesWithTheKeyOfWhatIsWrong) {
             "sensors.marker0.receivers[1].s_m");
   EXPECT_EQ(Refused("range_m: -1, receivers: [{pipe: P1, s_m: 3}]"), "sensors.marker0.range_m");
   EXPECT_EQ(Refused("missed: 1.2, receivers: [{pipe: P1, s_m: 3}]"), "sensors.marker0.missed");
+  EXPECT_EQ(Refused("receivers: [{pipe: P1, s_m: 3, cover_m: 3.1}]"), "sensors.marker0.receivers[0].cover_m");
+  EXPECT_EQ(Refused("receivers: [{pipe: P1, s_m: 3, aside_m: -3}]"), "sensors.marker0.receivers[0].aside_m");
+  EXPECT_EQ(Refused("receivers: [{id: A, pipe: P1, s_m: 3}, {id: A, pipe: P1, s_m: 4}]"),
+            "sensors.marker0.receivers[1].id");
   EXPECT_EQ(Refused(kTwo), "none");
 }
 

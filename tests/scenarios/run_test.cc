@@ -116,6 +116,7 @@ TEST_F(SmallRun, OtherChannelsDoNotChangeWhenSensorsComeGoOrMove) {
   more.insert(
       more.find("sensors:\n") + 9,
       "  a_second_imu: {kind: imu, rate_Hz: 333, gyro: {noise_deg_s_sqrtHz: 0.1}}\n"
+      "  looks_far_ahead: {kind: imu, rate_Hz: 1, sampling: {jitter_s: 0.45}}\n"
       "  thermometer: {kind: temperature, offset_sd_K: 0.5, noise_sd_K: 0.1}\n"
       "  gates: {kind: marker, survey_sd_m: 0.1, receivers: [{pipe: P1, s_m: 3}, {pipe: P1, s_m: 5}]}\n"
       "  wall_port: {kind: pressure, port_mm: [30, 0, 0], dynamic: sphere, noise_sd_Pa: 3}\n");

@@ -162,6 +162,38 @@ TEST(ImuSampling, AStuckAxisStaysAtItsLastReading) {
   });
 }
 
+/// About y, which itself turns about x: the mean of a coning motion's rate is not its turn.
+testing::FunctionScript Tumbling() {
+  return testing::FunctionScript([](double t) {
+    ScriptPoint s;
+    s.X_WB.q = ExpSO3({8 * t, 0, 0}) * ExpSO3({0, 20 * t, 0});
+    s.w_WB_B = ExpSO3({0, -20 * t, 0}) * Vector3d(8, 0, 0) + Vector3d(0, 20, 0);
+    return s;
+  });
+}
+
+TEST(ImuSampling, AnAxisThatSticksLaterIsAsAnyOtherBefore) {
+  const testing::ParamValues sound{{"rate_Hz", 100.0}, {"increments", true}};
+  testing::ParamValues failing = sound;
+  failing["gyro.stuck_axis"] = failing["accel.stuck_axis"] = std::string("z");
+  failing["gyro.stuck_from_s"] = failing["accel.stuck_from_s"] = 0.5;
+  std::vector<ImuSample> samples;
+  Play(Tumbling(), *MakeImu(sound), Rate(1000), 80,
+       [&](auto, const auto& value, auto&) { samples.push_back(std::get<ImuSample>(value)); });
+  Play(Tumbling(), *MakeImu(failing), Rate(1000), 80, [&](std::int64_t k, const auto& value, auto&) {
+    const auto& s = std::get<ImuSample>(value);
+    const ImuSample& expected = samples[static_cast<std::size_t>(std::min<std::int64_t>(k, 48))];
+    EXPECT_EQ(s.w_WS_S_rad_s.z(), expected.w_WS_S_rad_s.z()) << k;
+    EXPECT_NEAR(s.increments->dtheta_S_rad.z(), expected.increments->dtheta_S_rad.z(), 1e-17) << k;
+    EXPECT_NEAR(s.increments->dv_S_m_s.z(), expected.increments->dv_S_m_s.z(), 1e-16) << k;
+    EXPECT_EQ(s.increments->dtheta_S_rad.x(),
+              samples[static_cast<std::size_t>(k)].increments->dtheta_S_rad.x());
+  });
+  const ImuSample& first = samples.front();
+  EXPECT_GT(std::abs(first.increments->dtheta_S_rad.z() - 0.01 * first.w_WS_S_rad_s.z()), 1e-6)
+      << "no coning";
+}
+
 TEST(ImuSampling, FlagsTheAxesThatMetTheirRange) {
   for (const bool steps : {false, true}) {
     testing::ParamValues values{{"gyro.range_rad_s", 30.0}, {"accel.range_m_s2", 5.0}};

@@ -18,7 +18,8 @@ struct AllanArguments {
   std::string file;
   std::vector<std::string> columns, units;
   std::string time_column, time_unit;
-  double rate_Hz = 0, full_scale = 1, confidence = 0.95;
+  std::optional<double> rate_Hz;
+  double full_scale = 1, confidence = 0.95;
   std::string flicker = "poles";
   bool gauss_markov = false;
   std::int64_t shortest_cluster = 0;  // not given
@@ -49,13 +50,14 @@ scenarios::StaticRecordOptions MakeRecordOptions(const AllanArguments& arguments
   for (const std::string& text : arguments.units) options.units.push_back(SplitAssignment(text, "--unit"));
   options.time_column = arguments.time_column;
   options.time_unit = arguments.time_unit;
-  if (arguments.rate_Hz != 0) options.rate_Hz = arguments.rate_Hz;
+  options.rate_Hz = arguments.rate_Hz;
   options.full_scale = arguments.full_scale;
   return options;
 }
 
 scenarios::AllanAnalysis Analyse(const AllanArguments& arguments, const Display& display) {
   const auto record = scenarios::OpenStaticRecord(arguments.file, MakeRecordOptions(arguments));
+  if (!arguments.kalibr.empty()) scenarios::RequireKalibrGroups(record->groups());
   ProgressBar bar("allan", !display.quiet && !display.json);
   scenarios::AllanOptions options;
   options.fit.flicker =

@@ -46,7 +46,9 @@ void Convert(const ConvertArguments& arguments, const Display& display) {
     fmt::print("{}\n", json.dump());
     return;
   }
-  fmt::print("{} {} = {:.10g} {}\n", arguments.value, arguments.unit, si.value, unit);
+  const bool celsius = arguments.unit.find('C') != std::string::npos;
+  fmt::print("{} {} = {:.10g} {}{}\n", arguments.value, arguments.unit, si.value, unit,
+             celsius ? " (a difference of temperature)" : "");
   for (const auto& [name, other] : others.items()) fmt::print("  = {:.6g} {}\n", other.get<double>(), name);
 }
 

@@ -5,12 +5,12 @@
 #include <memory>
 
 #include "base/check.h"
+#include "base/nearest_name.h"
 #include "base/number.h"
 #include "base/params.h"
 #include "base/water.h"
 #include "scenarios/embedded.h"
 #include "scenarios/load.h"
-#include "scenarios/nearest_name.h"
 #include "scenarios/network_report.h"
 #include "scenarios/network_svg.h"
 #include "scenarios/output_file.h"
@@ -45,7 +45,7 @@ int FindNode(const sim::HydraulicModel& model, const std::string& id, const char
     if (model.NodeId(i) == id) return i;
     ids.push_back(model.NodeId(i));
   }
-  const auto nearest = scenarios::FindNearestName(id, ids);
+  const auto nearest = FindNearestName(id, ids);
   throw InputError("there is no node '" + id + "'" + (nearest ? "; did you mean '" + *nearest + "'?" : ""),
                    option);
 }

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "base/check.h"
-#include "scenarios/nearest_name.h"
+#include "base/nearest_name.h"
 #include "scenarios/reproduction.h"
 #include "tools/piperun/command.h"
 #include "tools/piperun/progress_bar.h"
@@ -28,7 +28,7 @@ const scenarios::Reproduction& FindReproduction(const std::string& name) {
     known.emplace_back(reproduction.name);
   }
   std::string problem = "there is no such study";
-  if (const auto near = scenarios::FindNearestName(name, known)) problem += "; did you mean '" + *near + "'?";
+  if (const auto near = FindNearestName(name, known)) problem += "; did you mean '" + *near + "'?";
   throw InputError(problem + " (`piperun reproduce` lists all)", "", name);
 }
 

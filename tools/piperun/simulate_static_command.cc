@@ -46,6 +46,8 @@ double ReadDuration_s(const std::string& text) {
 }
 
 scenarios::RestOptions MakeOptions(const StaticArguments& arguments) {
+  if (arguments.rate_Hz && !(*arguments.rate_Hz > 0))
+    throw InputError(FormatNumber(*arguments.rate_Hz) + " Hz is out of range; allowed: above 0", "--rate");
   scenarios::RestOptions options{ReadDuration_s(arguments.duration), arguments.rate_Hz, arguments.set};
   if (!arguments.seed.empty()) options.overrides.push_back("seed=" + arguments.seed);
   if (!arguments.run.empty()) options.overrides.push_back("run=" + arguments.run);

@@ -1,9 +1,9 @@
-#include "scenarios/nearest_name.h"
+#include "base/nearest_name.h"
 
 #include <algorithm>
 #include <numeric>
 
-namespace piperun::scenarios {
+namespace piperun {
 namespace {
 
 std::size_t EditDistance(const std::string& a, const std::string& b) {
@@ -21,6 +21,10 @@ std::size_t EditDistance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
+std::ptrdiff_t CommonPrefix(const std::string& a, const std::string& b) {
+  return std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first - a.begin();
+}
+
 }  // namespace
 
 std::optional<std::string> FindNearestName(const std::string& written,
@@ -29,7 +33,9 @@ std::optional<std::string> FindNearestName(const std::string& written,
   std::size_t fewest = std::max<std::size_t>(written.size() / 2, 1) + 1;
   for (const std::string& name : known) {
     const std::size_t edits = EditDistance(written, name);
-    if (edits < fewest) {
+    const bool alike =
+        nearest && edits == fewest && CommonPrefix(written, name) > CommonPrefix(written, *nearest);
+    if (edits < fewest || alike) {
       fewest = edits;
       nearest = name;
     }
@@ -37,4 +43,4 @@ std::optional<std::string> FindNearestName(const std::string& written,
   return nearest;
 }
 
-}  // namespace piperun::scenarios
+}  // namespace piperun
