@@ -7,24 +7,14 @@
 #include "acoustics/sound.h"
 #include "base/check.h"
 #include "base/number.h"
-#include "scenarios/nearest_name.h"
 #include "scenarios/network_params.h"
 
 namespace piperun::scenarios {
 namespace {
 
-int ResolvePipe(const Network& network, const std::string& id, const std::string& key) {
-  if (const auto pipe = network.FindPipe(id)) return *pipe;
-  std::vector<std::string> known;
-  for (const Pipe& pipe : network.pipes()) known.push_back(pipe.id);
-  std::string problem = "there is no pipe '" + id + "'";
-  if (const auto near = FindNearestName(id, known)) problem += "; did you mean '" + *near + "'?";
-  throw InputError(problem, key);
-}
-
 /// The end at a node of the first pipe there.
 acoustics::PipePlace FindPlaceAtNode(const Network& network, const std::string& id, const std::string& key) {
-  const int node = ResolveNode(network, id, key);
+  const int node = network.RequireNode(id, key);
   for (std::size_t i = 0; i < network.pipes().size(); ++i) {
     const Pipe& pipe = network.pipes()[i];
     if (pipe.from == node) return {static_cast<int>(i), 0};
@@ -38,7 +28,7 @@ acoustics::PipePlace FindPlace(const SoundEntry& entry, const Network& network, 
     throw InputError("a sound is in a pipe or at a node; give one of them", key + ".pipe");
   }
   if (!entry.node.empty()) return FindPlaceAtNode(network, entry.node, key + ".node");
-  const acoustics::PipePlace place{ResolvePipe(network, entry.pipe, key + ".pipe"), entry.s_m};
+  const acoustics::PipePlace place{network.RequirePipe(entry.pipe, key + ".pipe"), entry.s_m};
   const double length_m = network.pipe(place.pipe).length_m;
   if (place.s_m <= length_m) return place;
   throw InputError(FormatNumber(place.s_m) + " is beyond the end of pipe '" + entry.pipe +
