@@ -120,17 +120,29 @@ double CalcSurveyTime_s(double chainage_m) {
   return t_s;
 }
 
-void AddJoints(const Survey& survey, const RandomStream& random, acoustics::ImpactSound& impacts) {
-  const Disturbances& d = survey.disturbances;
-  if (!(d.joint_spacing_m > 0)) return;
-  const auto joints = static_cast<std::uint64_t>(survey.length_m / d.joint_spacing_m);
-  for (std::uint64_t i = 1; i < joints; ++i) {
-    if (random.Uniforms(i, 0)[0] > d.joint_share) continue;
-    const double excess_dB = d.joint_spread_dB * random.Normals(i, 1)[0];
-    const double t_s = CalcSurveyTime_s(d.joint_spacing_m * static_cast<double>(i));
-    impacts.Add({TrueTime(FromSeconds(t_s)), d.joint_impulse_N_s * std::pow(10, excess_dB / 20), 0.001});
+/// The blows at the pipe's joints, told to the sound of impacts as the ball comes to them.
+class Joints {
+ public:
+  Joints(const Survey& survey, const RandomStream& random) {
+    const Disturbances& d = survey.disturbances;
+    if (!(d.joint_spacing_m > 0)) return;
+    const auto joints = static_cast<std::uint64_t>(survey.length_m / d.joint_spacing_m);
+    for (std::uint64_t i = 1; i < joints; ++i) {
+      if (random.Uniforms(i, 0)[0] > d.joint_share) continue;
+      const double excess_dB = d.joint_spread_dB * random.Normals(i, 1)[0];
+      const double t_s = CalcSurveyTime_s(d.joint_spacing_m * static_cast<double>(i));
+      knocks_.push_back(
+          {TrueTime(FromSeconds(t_s)), d.joint_impulse_N_s * std::pow(10, excess_dB / 20), 0.001});
+    }
   }
-}
+  void TellUpTo(TrueTime time, acoustics::ImpactSound& impacts) {
+    for (; next_ < knocks_.size() && knocks_[next_].time <= time; ++next_) impacts.Add(knocks_[next_]);
+  }
+
+ private:
+  std::vector<acoustics::Knock> knocks_;
+  std::size_t next_ = 0;
+};
 
 /// A steady tone.
 class Tone {
@@ -193,7 +205,7 @@ void RenderSurvey(const Survey& survey, std::uint64_t seed, std::uint64_t run, c
   const acoustics::AcousticScene scene = MakeQuietScene(survey);
   acoustics::ImpactSound impacts(scene.ambient.impacts, scene.ball, scene.water.density_kg_m3, rate,
                                  params.high_pass_Hz, RandomStream(seed, "survey_knocks", run));
-  AddJoints(survey, RandomStream(seed, "survey_joints", run), impacts);
+  Joints joints(survey, RandomStream(seed, "survey_joints", run));
   const Tone tone(survey.disturbances, survey.rate_Hz);
   std::vector<float> psd(frames.bins()), pressure_Pa(frames.hop());
   std::vector<std::int32_t> counts(frames.hop());
@@ -206,6 +218,7 @@ void RenderSurvey(const Survey& survey, std::uint64_t seed, std::uint64_t run, c
     if (frame == 0) continue;
     std::copy(gaussian.begin(), gaussian.end(), pressure_Pa.begin());
     tone.AddTo((frame - 1) * hop, pressure_Pa);
+    joints.TellUpTo(SampleTime(frame * hop, rate), impacts);
     impacts.Render(pressure_Pa);
     for (std::size_t i = 0; i < counts.size(); ++i) {
       const double code = static_cast<double>(pressure_Pa[i]) / params.scale_Pa();
