@@ -8,9 +8,9 @@
 
 namespace piperun::estimator {
 
-/// Levels of one frame: of the band over the reference band, and of the band alone.
-using SoundLevels = std::array<double, 2>;
-enum class Channel : std::size_t { kRatio, kBand };
+/// Levels of one frame: of the band over the reference band, of the band alone, of the reference band.
+using SoundLevels = std::array<double, 3>;
+enum class Channel : std::size_t { kRatio, kBand, kReference };
 
 /// All frames heard within one short stretch of chainage, averaged.
 struct ProfileBin {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "estimator/drift_filter.h"
 #include "estimator/frame_locator.h"
 #include "estimator/impact_gate.h"
 #include "estimator/pipe_loss.h"
@@ -12,9 +13,9 @@
 namespace piperun::estimator::locators::matched_filter {
 namespace {
 
-constexpr double kWindow_dB = 12;     // a window reaches as far as the flattest roof falls by this
-constexpr double kBin_dB = 0.3;       // and a bin as far as the steepest one does
-constexpr double kApart_dB = 6;       // width, on the flattest roof, in which only the highest place is a leak
+constexpr double kWindow_dB = 12;  // a window reaches as far as the flattest roof falls by this
+constexpr double kBin_dB = 0.3;    // and a bin as far as the steepest one does
+constexpr double kApart_dB = 6;    // width, on the flattest roof, in which only the highest place is a leak
 constexpr double kRefineShare = 0.4;  // of the window: the top of the roof, where the leak drowns all else
 constexpr double kNeighbourShare = 0.45;  // of the way to the next leak
 constexpr double kBandShare = 0.5;        // of the ratio's roof that the band alone must show
@@ -22,6 +23,8 @@ constexpr double kMinZ = 3;               // below this a peak is not worth reme
 constexpr double kMaxReach_m = 200;
 constexpr double kHampelLimit = 3.5, kHampelFloor_dB = 1.5;
 constexpr double kPriorLeaks_per_km = 1;
+constexpr double kFramesPerBin[] = {1, 3, 10};  // for which filters are made: fast, usual and slow balls
+constexpr double kEdgeShare = 0.25;             // of the reach, whose mean stands for what was not heard
 
 struct MatchedFilterParams : ParamsOf<MatchedFilterParams> {
   BandParams bands;
@@ -29,6 +32,7 @@ struct MatchedFilterParams : ParamsOf<MatchedFilterParams> {
   std::optional<double> slope_dB_m;
   double false_alarms_per_km = 0.1;
   double min_height_dB = 1;
+  LevelModel background;
 
   void Visit(ParamVisitor& v) override {
     bands.Visit(v);
@@ -44,6 +48,13 @@ struct MatchedFilterParams : ParamsOf<MatchedFilterParams> {
              false_alarms_per_km);
     v.Number({"min_height_dB", "A leak must stand out of its background by this much."}, Range::NonNegative(),
              min_height_dB);
+    v.Number(
+        {"common_drift_dB", "How far the background's level drifts along the way in all bands alike, rms."},
+        Range::NonNegative(), background.common_drift_dB);
+    v.Number({"own_drift_dB", "How far each band drifts for itself, rms."}, Range::Positive(),
+             background.own_drift_dB);
+    v.Number({"drift_length_m", "Distance over which the drift forgets itself."}, Range::Positive(),
+             background.drift_length_m);
   }
 };
 
@@ -101,7 +112,12 @@ class MatchedFilter final : public FrameLocator {
   void KeepMaximum(const Peak& scored);
   bool BandRises(const Peak& peak) const;
   bool IsLeak(const Peak& peak) const;
-  Peak Score(std::int64_t bin) const;
+  Peak Score(std::int64_t bin);
+  double FillLevels(std::int64_t bin);
+  void HoldEdges(std::int64_t first, std::int64_t last);
+  const DriftFilter& FilterFor(double frames_per_bin) const;
+  void RememberNoise(std::int64_t bin, double z);
+  double CalcNoiseScale();
   void ReportSettled(std::int64_t up_to_bin);
   Place Refine(const Peak& peak, const BinRange& bins) const;
   void ReportPeak(const Peak& peak, double reach_m);
@@ -115,6 +131,11 @@ class MatchedFilter final : public FrameLocator {
   std::int64_t apart_bins_;
   double trials_per_km_;
   std::vector<Roof> roofs_;
+  std::vector<DriftFilter> filters_;
+  Eigen::VectorXd levels_dB_;   // scratch: the window's
+  std::vector<double> noise_;   // ring: |z| of one roof; -1: not yet
+  std::vector<double> sorted_;  // scratch
+  std::int64_t noise_count_ = 0;
   SoundProfile profile_;
   ImpactGate<Heard> gate_{kHampelLimit, kHampelFloor_dB};
   std::optional<std::int64_t> next_scan_;
@@ -140,6 +161,16 @@ MatchedFilter::MatchedFilter(const MatchedFilterParams& params, const EstimatorS
   for (const double slope : slopes_dB_m_) {
     for (const double height_dB : {3.0, 20.0}) roofs_.emplace_back(slope, height_dB, 2 * reach_m_);
   }
+  LevelModel model = params.background;
+  const BandParams& bands = params.bands;
+  model.band_scatter_dB = CalcFrameScatter_dB(bands.band_low_Hz, bands.band_high_Hz, bands.frame_s);
+  model.reference_scatter_dB =
+      CalcFrameScatter_dB(bands.reference_low_Hz, bands.reference_high_Hz, bands.frame_s);
+  for (const double frames : kFramesPerBin)
+    filters_.emplace_back(model, roofs_, profile_.bin_m(), reach_bins_, frames);
+  levels_dB_.resize(2 * (2 * reach_bins_ + 1));
+  noise_.assign(static_cast<std::size_t>(6 * reach_bins_), -1);
+  sorted_.reserve(noise_.size());
   // places a decibel's fall apart are told apart by the steepest roof
   trials_per_km_ = 1000 * slopes_dB_m_.back() / 4.34 * static_cast<double>(roofs_.size());
   scored_.resize(2 * static_cast<std::size_t>(apart_bins_) + 1);
@@ -149,7 +180,7 @@ MatchedFilter::MatchedFilter(const MatchedFilterParams& params, const EstimatorS
 void MatchedFilter::Consume(const LocatedFrame& frame) {
   const double band_dB = 10 * std::log10(frame.sound.power_Pa2);
   const double reference_dB = 10 * std::log10(frame.sound.reference_power_Pa2);
-  const Heard heard{frame.ball, {band_dB - params_.reference_weight * reference_dB, band_dB}};
+  const Heard heard{frame.ball, {band_dB - params_.reference_weight * reference_dB, band_dB, reference_dB}};
   const auto passed = gate_.Step(heard, heard.levels_dB[0]);
   if (!passed) return;
   profile_.Add(passed->ball, passed->levels_dB);
@@ -169,24 +200,91 @@ BinRange MatchedFilter::Window(std::int64_t bin, double reach_m) const {
   return {&profile_, std::max(profile_.first(), bin - reach), std::min(profile_.last(), bin + reach)};
 }
 
-Peak MatchedFilter::Score(std::int64_t bin) const {
-  const double x0_m = profile_.Centre_m(bin);
+/// The window's levels, band first, then reference. What was not heard between two places is put on the line
+/// between them; beyond what was heard stands the mean of the stretch there.
+double MatchedFilter::FillLevels(std::int64_t bin) {
+  const BinRange heard = Window(bin, reach_m_);
+  const std::int64_t first = bin - reach_bins_, bins = 2 * reach_bins_ + 1;
+  double frames = 0;
+  std::int64_t before = -1;
+  for (std::int64_t i = std::max(heard.first, first); i <= std::min(heard.last, first + bins - 1); ++i) {
+    const ProfileBin& here = profile_.At(i);
+    if (here.weight == 0) continue;
+    frames += here.weight;
+    const std::int64_t at = i - first;
+    const std::int64_t gap = before < 0 ? 1 : at - before;
+    for (const Eigen::Index base : {Eigen::Index{0}, static_cast<Eigen::Index>(bins)}) {
+      const double level_dB =
+          here.levels_dB[static_cast<std::size_t>(base == 0 ? Channel::kBand : Channel::kReference)];
+      const double from_dB = before < 0 ? level_dB : levels_dB_[base + before];
+      for (std::int64_t k = 1; k <= gap; ++k) {
+        const double u = static_cast<double>(k) / static_cast<double>(gap);
+        levels_dB_[base + at - gap + k] = from_dB + u * (level_dB - from_dB);
+      }
+    }
+    before = at;
+  }
+  HoldEdges(heard.first - first, before);
+  return frames / static_cast<double>(heard.last - heard.first + 1);
+}
+
+void MatchedFilter::HoldEdges(std::int64_t first, std::int64_t last) {
+  const std::int64_t bins = 2 * reach_bins_ + 1;
+  const auto stretch = std::min(last - first + 1,
+                                static_cast<std::int64_t>(kEdgeShare * static_cast<double>(reach_bins_)) + 1);
+  for (const std::int64_t base : {std::int64_t{0}, bins}) {
+    if (first > 0)
+      levels_dB_.segment(base, first).setConstant(levels_dB_.segment(base + first, stretch).mean());
+    if (last < bins - 1)
+      levels_dB_.segment(base + last + 1, bins - 1 - last)
+          .setConstant(levels_dB_.segment(base + last + 1 - stretch, stretch).mean());
+  }
+}
+
+const DriftFilter& MatchedFilter::FilterFor(double frames_per_bin) const {
+  std::size_t i = 0;
+  while (i + 1 < filters_.size() && frames_per_bin > std::sqrt(kFramesPerBin[i] * kFramesPerBin[i + 1])) ++i;
+  return filters_[i];
+}
+
+Peak MatchedFilter::Score(std::int64_t bin) {
   const BinRange bins = Window(bin, reach_m_);
   Peak peak{bin, 0, 0};
   // a roof needs both its sides
   if (bin - bins.first < apart_bins_ || bins.last - bin < apart_bins_) return peak;
-  double best = 0;
+  if (profile_.At(bins.first).weight == 0 && profile_.At(bin).weight == 0) return peak;
+  const DriftFilter& filter = FilterFor(FillLevels(bin));
+  DriftFilter::Response best;
   for (std::size_t i = 0; i < roofs_.size(); ++i) {
-    const double reduction = FitRoof(bins, x0_m, roofs_[i]).reduction_dB2;
-    if (reduction > best) {
-      best = reduction;
-      peak.roof = i;
-    }
+    const DriftFilter::Response response = filter.Eval(i, levels_dB_);
+    if (i == roofs_.size() / 2) RememberNoise(bin, response.z);
+    if (response.z <= best.z) continue;
+    best = response;
+    peak.roof = i;
   }
-  const RoofFit fit = FitRoof(bins, x0_m, roofs_[peak.roof]);
-  if (fit.amplitude * roofs_[peak.roof].Level_dB(0) < params_.min_height_dB) return peak;
-  peak.z = CalcQuality(bins, x0_m, roofs_[peak.roof], fit).z;
+  if (best.amplitude * roofs_[peak.roof].Level_dB(0) >= params_.min_height_dB) peak.z = best.z;
   return peak;
+}
+
+void MatchedFilter::RememberNoise(std::int64_t bin, double z) {
+  const auto n = static_cast<std::int64_t>(noise_.size());
+  noise_[static_cast<std::size_t>(((bin % n) + n) % n)] = std::abs(z);
+  noise_count_ = std::min(noise_count_ + 1, n);
+}
+
+/// How much the statistic scatters along the stretch that is remembered: its median deviation over that of a
+/// standard normal, at least 1.
+double MatchedFilter::CalcNoiseScale() {
+  if (noise_count_ < static_cast<std::int64_t>(noise_.size())) {
+    sorted_.assign(noise_.begin(), noise_.end());
+    std::erase(sorted_, -1.0);
+  } else {
+    sorted_.assign(noise_.begin(), noise_.end());
+  }
+  if (sorted_.empty()) return 1;
+  const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
+  std::nth_element(sorted_.begin(), middle, sorted_.end());
+  return std::max(1.0, 1.4826 * *middle);
 }
 
 void MatchedFilter::ScanUpTo(std::int64_t bin) {
@@ -218,8 +316,9 @@ bool MatchedFilter::IsLeak(const Peak& peak) const {
 
 void MatchedFilter::ReportSettled(std::int64_t up_to_bin) {
   while (!peaks_.empty() && peaks_.front().bin <= up_to_bin) {
-    const Peak peak = peaks_.front();
+    Peak peak = peaks_.front();
     peaks_.erase(peaks_.begin());
+    peak.z /= CalcNoiseScale();
     if (!IsLeak(peak)) continue;
     const auto next = std::find_if(peaks_.begin(), peaks_.end(), [&](const Peak& p) { return IsLeak(p); });
     double reach_m = kRefineShare * reach_m_;

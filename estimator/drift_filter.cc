@@ -1,0 +1,75 @@
+#include "estimator/drift_filter.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <cmath>
+#include <numbers>
+
+namespace piperun::estimator {
+namespace {
+
+double Matern(double distance_m, double length_m) {
+  const double u = std::sqrt(3.0) * std::abs(distance_m) / length_m;
+  return (1 + u) * std::exp(-u);
+}
+
+/// Of the window's levels, band first, then reference.
+Eigen::MatrixXd CalcCovariance(const LevelModel& model, Eigen::Index bins, double bin_m,
+                               double frames_per_bin) {
+  const double common = model.common_drift_dB * model.common_drift_dB;
+  const double own = model.own_drift_dB * model.own_drift_dB;
+  Eigen::MatrixXd C(2 * bins, 2 * bins);
+  for (Eigen::Index i = 0; i < bins; ++i) {
+    for (Eigen::Index j = 0; j < bins; ++j) {
+      const double k = Matern(static_cast<double>(i - j) * bin_m, model.drift_length_m);
+      C(i, j) = C(bins + i, bins + j) = (common + own) * k;
+      C(i, bins + j) = C(bins + i, j) = common * k;
+    }
+    C(i, i) += model.band_scatter_dB * model.band_scatter_dB / frames_per_bin;
+    C(bins + i, bins + i) += model.reference_scatter_dB * model.reference_scatter_dB / frames_per_bin;
+  }
+  return C;
+}
+
+/// Constant and trend of each band.
+Eigen::MatrixXd MakeNuisances(Eigen::Index bins) {
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(2 * bins, 4);
+  for (Eigen::Index i = 0; i < bins; ++i) {
+    H(i, 0) = H(bins + i, 2) = 1;
+    H(i, 1) = H(bins + i, 3) = static_cast<double>(2 * i) / static_cast<double>(bins - 1) - 1;
+  }
+  return H;
+}
+
+}  // namespace
+
+double CalcFrameScatter_dB(double low_Hz, double high_Hz, double frame_s) {
+  const auto integral = [&](double power) {  // of f^-power
+    return (std::pow(low_Hz, 1 - power) - std::pow(high_Hz, 1 - power)) / (power - 1);
+  };
+  const double bandwidth_Hz = integral(2.5) * integral(2.5) / integral(5);
+  return 10 / std::numbers::ln10 / std::sqrt(bandwidth_Hz * frame_s);
+}
+
+DriftFilter::DriftFilter(const LevelModel& model, const std::vector<Roof>& roofs, double bin_m,
+                         std::int64_t half_bins, double frames_per_bin)
+    : frames_per_bin_(frames_per_bin) {
+  const Eigen::Index bins = 2 * half_bins + 1;
+  const Eigen::LLT<Eigen::MatrixXd> llt(CalcCovariance(model, bins, bin_m, frames_per_bin));
+  const Eigen::MatrixXd whitened_H = llt.matrixL().solve(MakeNuisances(bins));
+  const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(whitened_H).householderQ() *
+                            Eigen::MatrixXd::Identity(2 * bins, 4);
+  weights_.resize(2 * bins, static_cast<Eigen::Index>(roofs.size()));
+  for (std::size_t r = 0; r < roofs.size(); ++r) {
+    Eigen::VectorXd m = Eigen::VectorXd::Zero(2 * bins);
+    for (Eigen::Index i = 0; i < bins; ++i)
+      m[i] = roofs[r].Level_dB(static_cast<double>(i - half_bins) * bin_m);
+    Eigen::VectorXd whitened = llt.matrixL().solve(m);
+    whitened -= Q * (Q.transpose() * whitened);
+    unit_amplitude_.push_back(1 / whitened.norm());
+    weights_.col(static_cast<Eigen::Index>(r)) =
+        llt.matrixL().transpose().solve(Eigen::VectorXd(whitened * unit_amplitude_.back()));
+  }
+}
+
+}  // namespace piperun::estimator

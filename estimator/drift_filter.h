@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "estimator/roof_fit.h"
+
+namespace piperun::estimator {
+
+/// What the level of two bands does along a pipe without leaks, as a detector assumes it. Drift has the
+/// covariance of Matern 3/2, sd^2 (1 + u) exp(-u), u = sqrt(3) |x| / length: continuous with a slope, rougher
+/// than any polynomial. A leak's roof has an edge on top that no such drift has.
+struct LevelModel {
+  double common_drift_dB = 2;  ///< standard deviation, both bands alike
+  double own_drift_dB = 0.7;   ///< standard deviation, each band for itself
+  double drift_length_m = 20;
+  double band_scatter_dB = 0.5;       ///< of one frame: statistics of noise
+  double reference_scatter_dB = 1.1;  ///< the same of the reference band
+};
+
+/// Scatter of the level of one frame of Gaussian noise, 10/ln 10 / sqrt(B T): T the frame, B the statistical
+/// bandwidth (int S)^2 / int S^2 over the band of noise that falls by 25 dB per decade (Bendat & Piersol,
+/// Random Data, section 8.2.1).
+double CalcFrameScatter_dB(double low_Hz, double high_Hz, double frame_s);
+
+/// Generalised least squares for a roof on drifting levels: with the levels of both bands y in a window of
+/// bins, their covariance C under LevelModel, and constant and trend of each band as nuisances H,
+///
+///     z = m^T P C^-1 y / sqrt(m^T P C^-1 m)        P: projection off H in the metric of C^-1
+///
+/// which is standard normal without a leak when the model holds, and the most powerful linear statistic for
+/// the roof m in the first band (Kay, Fundamentals of Statistical Signal Processing II, 4.4). Bins are
+/// equally wide, so z is a fixed weighted sum of levels. The reference band serves to foretell the common
+/// drift; the filter itself finds how far to average it.
+class DriftFilter {
+ public:
+  /// Windows of 2 half_bins + 1 bins; `frames_per_bin` scales the scatter.
+  DriftFilter(const LevelModel& model, const std::vector<Roof>& roofs, double bin_m, std::int64_t half_bins,
+              double frames_per_bin);
+
+  struct Response {
+    double z = 0;
+    double amplitude = 0;  ///< A, of A m(x - x0)
+  };
+  /// Levels: the window's bins of the band, then those of the reference.
+  Response Eval(std::size_t roof, const Eigen::VectorXd& levels_dB) const {
+    const double z = weights_.col(static_cast<Eigen::Index>(roof)).dot(levels_dB);
+    return {z, z * unit_amplitude_[roof]};
+  }
+  double frames_per_bin() const { return frames_per_bin_; }
+
+ private:
+  double frames_per_bin_;
+  Eigen::MatrixXd weights_;  // one column per roof
+  std::vector<double> unit_amplitude_;
+};
+
+}  // namespace piperun::estimator
