@@ -51,24 +51,24 @@ double CalcFrameScatter_dB(double low_Hz, double high_Hz, double frame_s) {
   return 10 / std::numbers::ln10 / std::sqrt(bandwidth_Hz * frame_s);
 }
 
-DriftFilter::DriftFilter(const LevelModel& model, const std::vector<Roof>& roofs, double bin_m,
-                         std::int64_t half_bins, double frames_per_bin)
-    : frames_per_bin_(frames_per_bin) {
-  const Eigen::Index bins = 2 * half_bins + 1;
-  const Eigen::LLT<Eigen::MatrixXd> llt(CalcCovariance(model, bins, bin_m, frames_per_bin));
+DriftFilter::DriftFilter(const LevelModel& model, const std::vector<Roof>& roofs, const Window& window) {
+  const Eigen::Index bins = window.behind + window.ahead + 1, all = 2 * window.half + 1;
+  const Eigen::LLT<Eigen::MatrixXd> llt(CalcCovariance(model, bins, window.bin_m, window.frames_per_bin));
   const Eigen::MatrixXd whitened_H = llt.matrixL().solve(MakeNuisances(bins));
   const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(whitened_H).householderQ() *
                             Eigen::MatrixXd::Identity(2 * bins, 4);
-  weights_.resize(2 * bins, static_cast<Eigen::Index>(roofs.size()));
+  weights_.setZero(2 * all, static_cast<Eigen::Index>(roofs.size()));
   for (std::size_t r = 0; r < roofs.size(); ++r) {
     Eigen::VectorXd m = Eigen::VectorXd::Zero(2 * bins);
     for (Eigen::Index i = 0; i < bins; ++i)
-      m[i] = roofs[r].Level_dB(static_cast<double>(i - half_bins) * bin_m);
+      m[i] = roofs[r].Level_dB(static_cast<double>(i - window.behind) * window.bin_m);
     Eigen::VectorXd whitened = llt.matrixL().solve(m);
     whitened -= Q * (Q.transpose() * whitened);
     unit_amplitude_.push_back(1 / whitened.norm());
-    weights_.col(static_cast<Eigen::Index>(r)) =
-        llt.matrixL().transpose().solve(Eigen::VectorXd(whitened * unit_amplitude_.back()));
+    const Eigen::VectorXd w = llt.matrixL().transpose().solve(whitened) * unit_amplitude_.back();
+    auto column = weights_.col(static_cast<Eigen::Index>(r));
+    column.segment(window.half - window.behind, bins) = w.head(bins);
+    column.segment(all + window.half - window.behind, bins) = w.tail(bins);
   }
 }
 

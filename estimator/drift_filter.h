@@ -34,23 +34,25 @@ double CalcFrameScatter_dB(double low_Hz, double high_Hz, double frame_s);
 /// drift; the filter itself finds how far to average it.
 class DriftFilter {
  public:
-  /// Windows of 2 half_bins + 1 bins; `frames_per_bin` scales the scatter.
-  DriftFilter(const LevelModel& model, const std::vector<Roof>& roofs, double bin_m, std::int64_t half_bins,
-              double frames_per_bin);
+  /// Which bins of a window of 2 half + 1 around x0 have been heard: `behind` before and `ahead` after it.
+  struct Window {
+    std::int64_t half = 0, behind = 0, ahead = 0;
+    double bin_m = 0;
+    double frames_per_bin = 1;  ///< divides the scatter's variance
+  };
+  DriftFilter(const LevelModel& model, const std::vector<Roof>& roofs, const Window& window);
 
   struct Response {
     double z = 0;
     double amplitude = 0;  ///< A, of A m(x - x0)
   };
-  /// Levels: the window's bins of the band, then those of the reference.
+  /// Levels: the 2 half + 1 bins of the band, then those of the reference; what was not heard counts nothing.
   Response Eval(std::size_t roof, const Eigen::VectorXd& levels_dB) const {
     const double z = weights_.col(static_cast<Eigen::Index>(roof)).dot(levels_dB);
     return {z, z * unit_amplitude_[roof]};
   }
-  double frames_per_bin() const { return frames_per_bin_; }
 
  private:
-  double frames_per_bin_;
   Eigen::MatrixXd weights_;  // one column per roof
   std::vector<double> unit_amplitude_;
 };

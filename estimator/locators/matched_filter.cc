@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -24,7 +25,7 @@ constexpr double kMaxReach_m = 200;
 constexpr double kHampelLimit = 3.5, kHampelFloor_dB = 1.5;
 constexpr double kPriorLeaks_per_km = 1;
 constexpr double kFramesPerBin[] = {1, 3, 10};  // for which filters are made: fast, usual and slow balls
-constexpr double kEdgeShare = 0.25;             // of the reach, whose mean stands for what was not heard
+constexpr std::int64_t kSteps = 6;              // of the reach: how much of it has been heard on each side
 
 struct MatchedFilterParams : ParamsOf<MatchedFilterParams> {
   BandParams bands;
@@ -114,10 +115,10 @@ class MatchedFilter final : public FrameLocator {
   bool IsLeak(const Peak& peak) const;
   Peak Score(std::int64_t bin);
   double FillLevels(std::int64_t bin);
-  void HoldEdges(std::int64_t first, std::int64_t last);
-  const DriftFilter& FilterFor(double frames_per_bin) const;
+  void FillTo(const ProfileBin& bin, std::int64_t from, std::int64_t to);
+  const DriftFilter& FilterFor(double frames_per_bin, std::int64_t behind, std::int64_t ahead);
   void RememberNoise(std::int64_t bin, double z);
-  double CalcNoiseScale();
+  double CalcNoiseScale(std::int64_t bin);
   void ReportSettled(std::int64_t up_to_bin);
   Place Refine(const Peak& peak, const BinRange& bins) const;
   void ReportPeak(const Peak& peak, double reach_m);
@@ -131,11 +132,13 @@ class MatchedFilter final : public FrameLocator {
   std::int64_t apart_bins_;
   double trials_per_km_;
   std::vector<Roof> roofs_;
-  std::vector<DriftFilter> filters_;
+  LevelModel model_;
+  std::vector<std::optional<DriftFilter>> filters_;
   Eigen::VectorXd levels_dB_;   // scratch: the window's
-  std::vector<double> noise_;   // ring: |z| of one roof; -1: not yet
+  std::vector<double> noise_;   // ring: |z| of one roof
   std::vector<double> sorted_;  // scratch
-  std::int64_t noise_count_ = 0;
+  std::optional<std::int64_t> noise_first_;
+  std::int64_t noise_last_ = 0;
   SoundProfile profile_;
   ImpactGate<Heard> gate_{kHampelLimit, kHampelFloor_dB};
   std::optional<std::int64_t> next_scan_;
@@ -161,15 +164,14 @@ MatchedFilter::MatchedFilter(const MatchedFilterParams& params, const EstimatorS
   for (const double slope : slopes_dB_m_) {
     for (const double height_dB : {3.0, 20.0}) roofs_.emplace_back(slope, height_dB, 2 * reach_m_);
   }
-  LevelModel model = params.background;
+  model_ = params.background;
   const BandParams& bands = params.bands;
-  model.band_scatter_dB = CalcFrameScatter_dB(bands.band_low_Hz, bands.band_high_Hz, bands.frame_s);
-  model.reference_scatter_dB =
+  model_.band_scatter_dB = CalcFrameScatter_dB(bands.band_low_Hz, bands.band_high_Hz, bands.frame_s);
+  model_.reference_scatter_dB =
       CalcFrameScatter_dB(bands.reference_low_Hz, bands.reference_high_Hz, bands.frame_s);
-  for (const double frames : kFramesPerBin)
-    filters_.emplace_back(model, roofs_, profile_.bin_m(), reach_bins_, frames);
-  levels_dB_.resize(2 * (2 * reach_bins_ + 1));
-  noise_.assign(static_cast<std::size_t>(6 * reach_bins_), -1);
+  filters_.resize(std::size(kFramesPerBin) * (kSteps + 1) * (kSteps + 1));
+  levels_dB_.setZero(2 * (2 * reach_bins_ + 1));
+  noise_.assign(static_cast<std::size_t>(10 * reach_bins_), 0);
   sorted_.reserve(noise_.size());
   // places a decibel's fall apart are told apart by the steepest roof
   trials_per_km_ = 1000 * slopes_dB_m_.back() / 4.34 * static_cast<double>(roofs_.size());
@@ -201,50 +203,56 @@ BinRange MatchedFilter::Window(std::int64_t bin, double reach_m) const {
 }
 
 /// The window's levels, band first, then reference. What was not heard between two places is put on the line
-/// between them; beyond what was heard stands the mean of the stretch there.
+/// between them. Returns the mean number of
+/// frames per bin; 0 when nothing was heard.
 double MatchedFilter::FillLevels(std::int64_t bin) {
   const BinRange heard = Window(bin, reach_m_);
-  const std::int64_t first = bin - reach_bins_, bins = 2 * reach_bins_ + 1;
+  const std::int64_t first = bin - reach_bins_;
   double frames = 0;
   std::int64_t before = -1;
-  for (std::int64_t i = std::max(heard.first, first); i <= std::min(heard.last, first + bins - 1); ++i) {
+  for (std::int64_t i = heard.first; i <= heard.last; ++i) {
     const ProfileBin& here = profile_.At(i);
     if (here.weight == 0) continue;
     frames += here.weight;
-    const std::int64_t at = i - first;
-    const std::int64_t gap = before < 0 ? 1 : at - before;
-    for (const Eigen::Index base : {Eigen::Index{0}, static_cast<Eigen::Index>(bins)}) {
-      const double level_dB =
-          here.levels_dB[static_cast<std::size_t>(base == 0 ? Channel::kBand : Channel::kReference)];
-      const double from_dB = before < 0 ? level_dB : levels_dB_[base + before];
-      for (std::int64_t k = 1; k <= gap; ++k) {
-        const double u = static_cast<double>(k) / static_cast<double>(gap);
-        levels_dB_[base + at - gap + k] = from_dB + u * (level_dB - from_dB);
-      }
-    }
-    before = at;
+    if (before < 0) before = i - first;
+    FillTo(here, before, i - first);
+    before = i - first;
   }
-  HoldEdges(heard.first - first, before);
+  if (before < 0) return 0;
   return frames / static_cast<double>(heard.last - heard.first + 1);
 }
 
-void MatchedFilter::HoldEdges(std::int64_t first, std::int64_t last) {
-  const std::int64_t bins = 2 * reach_bins_ + 1;
-  const auto stretch = std::min(last - first + 1,
-                                static_cast<std::int64_t>(kEdgeShare * static_cast<double>(reach_bins_)) + 1);
-  for (const std::int64_t base : {std::int64_t{0}, bins}) {
-    if (first > 0)
-      levels_dB_.segment(base, first).setConstant(levels_dB_.segment(base + first, stretch).mean());
-    if (last < bins - 1)
-      levels_dB_.segment(base + last + 1, bins - 1 - last)
-          .setConstant(levels_dB_.segment(base + last + 1 - stretch, stretch).mean());
+/// Puts a bin's levels at index `to` of the window, and a line between them and those at `from` <= to.
+void MatchedFilter::FillTo(const ProfileBin& bin, std::int64_t from, std::int64_t to) {
+  std::int64_t base = 0;
+  for (const Channel channel : {Channel::kBand, Channel::kReference}) {
+    const double level_dB = bin.levels_dB[static_cast<std::size_t>(channel)];
+    levels_dB_[base + to] = level_dB;
+    const double step_dB =
+        from < to ? (level_dB - levels_dB_[base + from]) / static_cast<double>(to - from) : 0;
+    for (std::int64_t k = from + 1; k < to; ++k) levels_dB_[base + k] = levels_dB_[base + k - 1] + step_dB;
+    base += 2 * reach_bins_ + 1;
   }
 }
 
-const DriftFilter& MatchedFilter::FilterFor(double frames_per_bin) const {
-  std::size_t i = 0;
-  while (i + 1 < filters_.size() && frames_per_bin > std::sqrt(kFramesPerBin[i] * kFramesPerBin[i + 1])) ++i;
-  return filters_[i];
+/// The filter for so many frames per bin and so much of the reach heard on each side; made when it is first
+/// needed, which for all but the ends of a record is at its beginning.
+const DriftFilter& MatchedFilter::FilterFor(double frames_per_bin, std::int64_t behind, std::int64_t ahead) {
+  std::size_t speed = 0;
+  while (speed + 1 < std::size(kFramesPerBin) &&
+         frames_per_bin > std::sqrt(kFramesPerBin[speed] * kFramesPerBin[speed + 1]))
+    ++speed;
+  const auto steps = [this](std::int64_t bins) { return std::min(kSteps, bins * kSteps / reach_bins_); };
+  const auto at = static_cast<std::size_t>(
+      (static_cast<std::int64_t>(speed) * (kSteps + 1) + steps(behind)) * (kSteps + 1) + steps(ahead));
+  if (!filters_[at]) {
+    filters_[at].emplace(
+        model_, roofs_,
+        DriftFilter::Window{reach_bins_, std::max(apart_bins_, steps(behind) * reach_bins_ / kSteps),
+                            std::max(apart_bins_, steps(ahead) * reach_bins_ / kSteps), profile_.bin_m(),
+                            kFramesPerBin[speed]});
+  }
+  return *filters_[at];
 }
 
 Peak MatchedFilter::Score(std::int64_t bin) {
@@ -252,8 +260,9 @@ Peak MatchedFilter::Score(std::int64_t bin) {
   Peak peak{bin, 0, 0};
   // a roof needs both its sides
   if (bin - bins.first < apart_bins_ || bins.last - bin < apart_bins_) return peak;
-  if (profile_.At(bins.first).weight == 0 && profile_.At(bin).weight == 0) return peak;
-  const DriftFilter& filter = FilterFor(FillLevels(bin));
+  const double frames_per_bin = FillLevels(bin);
+  if (frames_per_bin == 0) return peak;
+  const DriftFilter& filter = FilterFor(frames_per_bin, bin - bins.first, bins.last - bin);
   DriftFilter::Response best;
   for (std::size_t i = 0; i < roofs_.size(); ++i) {
     const DriftFilter::Response response = filter.Eval(i, levels_dB_);
@@ -267,21 +276,21 @@ Peak MatchedFilter::Score(std::int64_t bin) {
 }
 
 void MatchedFilter::RememberNoise(std::int64_t bin, double z) {
+  if (!noise_first_) noise_first_ = bin;
   const auto n = static_cast<std::int64_t>(noise_.size());
   noise_[static_cast<std::size_t>(((bin % n) + n) % n)] = std::abs(z);
-  noise_count_ = std::min(noise_count_ + 1, n);
+  noise_last_ = bin;
 }
 
-/// How much the statistic scatters along the stretch that is remembered: its median deviation over that of a
-/// standard normal, at least 1.
-double MatchedFilter::CalcNoiseScale() {
-  if (noise_count_ < static_cast<std::int64_t>(noise_.size())) {
-    sorted_.assign(noise_.begin(), noise_.end());
-    std::erase(sorted_, -1.0);
-  } else {
-    sorted_.assign(noise_.begin(), noise_.end());
-  }
-  if (sorted_.empty()) return 1;
+/// How much the statistic scatters where a leak at `bin` cannot be heard: two reaches and more before it.
+/// Median deviation over that of a standard normal, at least 1; 1 while less than a reach of that is known.
+double MatchedFilter::CalcNoiseScale(std::int64_t bin) {
+  const auto n = static_cast<std::int64_t>(noise_.size());
+  const std::int64_t first = std::max(noise_first_.value_or(0), noise_last_ - n + 1);
+  sorted_.clear();
+  for (std::int64_t i = first; i < bin - 2 * reach_bins_; ++i)
+    sorted_.push_back(noise_[static_cast<std::size_t>(((i % n) + n) % n)]);
+  if (static_cast<std::int64_t>(sorted_.size()) < reach_bins_) return 1;
   const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
   std::nth_element(sorted_.begin(), middle, sorted_.end());
   return std::max(1.0, 1.4826 * *middle);
@@ -318,7 +327,7 @@ void MatchedFilter::ReportSettled(std::int64_t up_to_bin) {
   while (!peaks_.empty() && peaks_.front().bin <= up_to_bin) {
     Peak peak = peaks_.front();
     peaks_.erase(peaks_.begin());
-    peak.z /= CalcNoiseScale();
+    peak.z /= CalcNoiseScale(peak.bin);
     if (!IsLeak(peak)) continue;
     const auto next = std::find_if(peaks_.begin(), peaks_.end(), [&](const Peak& p) { return IsLeak(p); });
     double reach_m = kRefineShare * reach_m_;
