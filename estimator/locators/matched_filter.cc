@@ -140,7 +140,7 @@ class MatchedFilter final : public FrameLocator {
   std::optional<std::int64_t> noise_first_;
   std::int64_t noise_last_ = 0;
   SoundProfile profile_;
-  ImpactGate<Heard> gate_{kHampelLimit, kHampelFloor_dB};
+  ImpactGate<Heard> band_gate_{kHampelLimit, kHampelFloor_dB}, reference_gate_{kHampelLimit, kHampelFloor_dB};
   std::optional<std::int64_t> next_scan_;
   std::vector<Peak> scored_;  // ring: the last places, twice apart_bins_ and one
   std::size_t next_scored_ = 0;
@@ -183,7 +183,9 @@ void MatchedFilter::Consume(const LocatedFrame& frame) {
   const double band_dB = 10 * std::log10(frame.sound.power_Pa2);
   const double reference_dB = 10 * std::log10(frame.sound.reference_power_Pa2);
   const Heard heard{frame.ball, {band_dB - params_.reference_weight * reference_dB, band_dB, reference_dB}};
-  const auto passed = gate_.Step(heard, heard.levels_dB[0]);
+  const auto unstruck = band_gate_.Step(heard, band_dB);
+  if (!unstruck) return;
+  const auto passed = reference_gate_.Step(*unstruck, unstruck->levels_dB[2]);
   if (!passed) return;
   profile_.Add(passed->ball, passed->levels_dB);
   ScanUpTo(profile_.last() - reach_bins_ - 1);

@@ -1,0 +1,76 @@
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "base/number.h"
+#include "scenarios/detect.h"
+#include "scenarios/output_file.h"
+#include "tools/piperun/command.h"
+#include "tools/piperun/table.h"
+
+namespace piperun::tools {
+namespace {
+
+struct DetectArguments {
+  std::string audio, pipe, track, locator = "matched_filter", out;
+};
+
+std::string DescribeDetections(const scenarios::Detections& detections) {
+  if (detections.leaks.empty()) return "no leak found\n";
+  Table table({"time s", "chainage m", "sigma m", "confidence"});
+  for (const estimator::LeakEstimate& leak : detections.leaks) {
+    table.Add({FormatFixed(Seconds(leak.t_cpa), 2), detections.placed ? FormatFixed(leak.chainage_m, 2) : "-",
+               detections.placed ? FormatFixed(leak.sigma_m, 3) : "-", FormatFixed(leak.confidence, 3)});
+  }
+  return table.Text();
+}
+
+void Describe(const scenarios::Detections& detections) {
+  fmt::print("{}: {} s at {} Hz, {}\n", detections.audio, FormatFixed(detections.duration_s, 1),
+             FormatNumber(detections.rate_Hz), detections.locator);
+  if (!detections.placed)
+    fmt::print("nothing is known of the way (--pipe, --track): times only, for a ball at about 0.5 m/s\n");
+  if (detections.full_scale_samples > 0)
+    fmt::print("{} samples at full scale\n", detections.full_scale_samples);
+  fmt::print("{}", DescribeDetections(detections));
+}
+
+int Detect(const DetectArguments& arguments, const Display& display) {
+  scenarios::DetectOptions options;
+  options.audio = arguments.audio;
+  options.track = arguments.track;
+  options.locator = arguments.locator;
+  if (!arguments.pipe.empty()) options.pipe = scenarios::LoadDetectPipe(arguments.pipe);
+  const scenarios::Detections detections = scenarios::Detect(options);
+  const std::string json = scenarios::WriteDetectionsJson(detections);
+  if (!arguments.out.empty()) {
+    const std::filesystem::path out = arguments.out;
+    std::filesystem::create_directories(out);
+    scenarios::WriteTextFile(out / "detections.json", json);
+    scenarios::WriteTextFile(out / "detections.csv", scenarios::WriteDetectionsCsv(detections));
+    scenarios::WriteTextFile(out / "detections.svg", scenarios::DrawDetectionsSvg(detections));
+  }
+  if (display.json) {
+    fmt::print("{}", json);
+  } else if (!display.quiet) {
+    Describe(detections);
+  }
+  return kOk;
+}
+
+}  // namespace
+
+void AddDetectCommand(CLI::App& app, Display& display, int& exit_code) {
+  auto arguments = std::make_shared<DetectArguments>();
+  CLI::App* command = app.add_subcommand("detect", "Find leaks in a recording of a passing hydrophone");
+  command->add_option("AUDIO", arguments->audio, "Sound file, one channel")->required();
+  command->add_option("--pipe", arguments->pipe,
+                      "YAML: material, diameter_m, wall_thickness_m, speed_m_s, full_scale_Pa ..");
+  command->add_option("--track", arguments->track, "CSV with header time_s,chainage_m");
+  command->add_option("--locator", arguments->locator, "Kind of locator");
+  command->add_option("-o,--out", arguments->out, "Folder for table, JSON and plot");
+  command->callback([arguments, &display, &exit_code] { exit_code = Detect(*arguments, display); });
+}
+
+}  // namespace piperun::tools
