@@ -53,7 +53,8 @@ struct LeakEstimate {
   double sigma_m = 0;
   Vector3d p_W = Vector3d::Zero();
   std::optional<double> flow_m3_s;
-  double confidence = 0;  ///< 0 to 1
+  double flow_sigma_dB = 0;  ///< standard deviation of 20 lg flow, calibration included
+  double confidence = 0;     ///< 0 to 1
 };
 
 /// What Finish() may add: the track again, using all measurements.

@@ -285,7 +285,8 @@ std::string WriteDetectionsJson(const Detections& detections) {
                      {"chainage_m", detections.placed ? Json(leak.chainage_m) : Json()},
                      {"sigma_m", detections.placed ? Json(leak.sigma_m) : Json()},
                      {"confidence", leak.confidence},
-                     {"flow_m3_s", leak.flow_m3_s ? Json(*leak.flow_m3_s) : Json()}});
+                     {"flow_m3_s", leak.flow_m3_s ? Json(*leak.flow_m3_s) : Json()},
+                     {"flow_sigma_dB", leak.flow_m3_s ? Json(leak.flow_sigma_dB) : Json()}});
   }
   const Json json{{"schema", "piperun.detect/1"},
                   {"audio", detections.audio},
@@ -298,11 +299,13 @@ std::string WriteDetectionsJson(const Detections& detections) {
 }
 
 std::string WriteDetectionsCsv(const Detections& detections) {
-  std::string csv = "time_s,chainage_m,sigma_m,confidence\n";
+  std::string csv = "time_s,chainage_m,sigma_m,confidence,flow_m3_s,flow_sigma_dB\n";
   for (const estimator::LeakEstimate& leak : detections.leaks) {
     const std::string place =
         detections.placed ? FormatNumber(leak.chainage_m) + "," + FormatNumber(leak.sigma_m) : ",";
-    csv += FormatNumber(Seconds(leak.t_cpa)) + "," + place + "," + FormatNumber(leak.confidence) + "\n";
+    csv += FormatNumber(Seconds(leak.t_cpa)) + "," + place + "," + FormatNumber(leak.confidence) + ",";
+    csv += leak.flow_m3_s ? FormatNumber(*leak.flow_m3_s) + "," + FormatNumber(leak.flow_sigma_dB) : ",";
+    csv += "\n";
   }
   return csv;
 }

@@ -61,6 +61,7 @@ struct ScoredLeak {
   estimator::LeakEstimate estimate;
   std::optional<std::string> match;
   std::optional<double> error_m;  ///< estimated minus true chainage
+  std::optional<double> flow_error_dB{};  ///< 20 lg (estimated / true flow), where both are
 };
 
 struct LeakScore {

@@ -8,6 +8,7 @@
 #include "estimator/drift_filter.h"
 #include "estimator/frame_locator.h"
 #include "estimator/impact_gate.h"
+#include "estimator/leak_flow.h"
 #include "estimator/pipe_loss.h"
 #include "estimator/roof_fit.h"
 
@@ -34,6 +35,7 @@ struct MatchedFilterParams : ParamsOf<MatchedFilterParams> {
   double false_alarms_per_km = 0.1;
   double min_height_dB = 1;
   LevelModel background;
+  JetModel jet;
 
   void Visit(ParamVisitor& v) override {
     bands.Visit(v);
@@ -56,6 +58,12 @@ struct MatchedFilterParams : ParamsOf<MatchedFilterParams> {
              background.own_drift_dB);
     v.Number({"drift_length_m", "Distance over which the drift forgets itself."}, Range::Positive(),
              background.drift_length_m);
+    v.Number({"leak_pressure_Pa", "Pressure assumed at a leak, inside minus outside, for telling its flow."},
+             Range::Positive(), jet.pressure_Pa);
+    v.Number({"relative_fluctuation",
+              "Rms fluctuation of a leak's flow over the flow, assumed for telling its flow; levels in the "
+              "literature differ by 15 dB."},
+             Range::Positive(), jet.relative_fluctuation);
   }
 };
 
@@ -121,7 +129,10 @@ class MatchedFilter final : public FrameLocator {
   double CalcNoiseScale(std::int64_t bin);
   void ReportSettled(std::int64_t up_to_bin);
   Place Refine(const Peak& peak, const BinRange& bins) const;
+  Place RefineInDrift(const Peak& peak);
+  double Significance(std::int64_t bin, std::size_t roof);
   void ReportPeak(const Peak& peak, double reach_m);
+  void TellFlow(const Peak& peak, BinRange band, double chainage_m, LeakEstimate& leak) const;
   BinRange Window(std::int64_t bin, double reach_m) const;
   double FalseAlarms_per_km(double z) const { return trials_per_km_ * CalcNormalTail(z); }
 
@@ -131,6 +142,7 @@ class MatchedFilter final : public FrameLocator {
   std::int64_t reach_bins_;
   std::int64_t apart_bins_;
   double trials_per_km_;
+  std::optional<Pipe> pipe_;  // the first of the way; nothing without a map
   std::vector<Roof> roofs_;
   LevelModel model_;
   std::vector<std::optional<DriftFilter>> filters_;
@@ -164,6 +176,7 @@ MatchedFilter::MatchedFilter(const MatchedFilterParams& params, const EstimatorS
   for (const double slope : slopes_dB_m_) {
     for (const double height_dB : {3.0, 20.0}) roofs_.emplace_back(slope, height_dB, 2 * reach_m_);
   }
+  if (start.map) pipe_ = start.map->network.pipe(start.map->route.pieces().front().pipe);
   model_ = params.background;
   const BandParams& bands = params.bands;
   model_.band_scatter_dB = CalcFrameScatter_dB(bands.band_low_Hz, bands.band_high_Hz, bands.frame_s);
@@ -363,12 +376,40 @@ Place MatchedFilter::Refine(const Peak& peak, const BinRange& bins) const {
   return place;
 }
 
+double MatchedFilter::Significance(std::int64_t bin, std::size_t roof) {
+  const BinRange bins = Window(bin, reach_m_);
+  const double frames_per_bin = FillLevels(bin);
+  if (frames_per_bin == 0 || bin < bins.first || bin > bins.last) return 0;
+  return FilterFor(frames_per_bin, bin - bins.first, bins.last - bin).Eval(roof, levels_dB_).z;
+}
+
+/// The place by the drift filter: z^2/2 is the logarithm of the likelihood ratio, so its top is the place and
+/// its curvature there the inverse of the variance (times the noise's scale). By the parabola through the
+/// top and a quarter of apart_bins_ on both sides.
+Place MatchedFilter::RefineInDrift(const Peak& peak) {
+  const std::int64_t step = std::max<std::int64_t>(1, apart_bins_ / 4);
+  double log_likelihood[3];
+  for (int i = 0; i < 3; ++i) {
+    const double z = Significance(peak.bin + (i - 1) * step, peak.roof);
+    log_likelihood[i] = z > 0 ? 0.5 * z * z : 0;
+  }
+  Place place{profile_.Centre_m(peak.bin)};
+  const double h_m = profile_.bin_m() * static_cast<double>(step);
+  const double curvature = (2 * log_likelihood[1] - log_likelihood[0] - log_likelihood[2]) / (h_m * h_m);
+  if (!(curvature > 0)) return place;
+  place.chainage_m +=
+      std::clamp(0.5 * (log_likelihood[2] - log_likelihood[0]) / (curvature * h_m), -h_m, h_m);
+  place.variance_m2 = std::pow(CalcNoiseScale(peak.bin), 2) / curvature;
+  return place;
+}
+
 void MatchedFilter::ReportPeak(const Peak& peak, double reach_m) {
   BinRange bins = Window(peak.bin, reach_m);
   Place best = Refine(peak, bins);
   bins.channel = Channel::kBand;
   const Place by_band = Refine(peak, bins);
   if (by_band.variance_m2 < best.variance_m2) best = by_band;
+  if (reach_m >= kRefineShare * reach_m_) best = RefineInDrift(peak);  // no neighbour in its wide window
   if (!std::isfinite(best.variance_m2)) return;
   const TrackPoint place = profile_.Interpolate(best.chainage_m);
   LeakEstimate leak;
@@ -377,7 +418,27 @@ void MatchedFilter::ReportPeak(const Peak& peak, double reach_m) {
   leak.sigma_m = std::sqrt(best.variance_m2 + place.chainage_sd_m * place.chainage_sd_m);
   leak.p_W = place.p_W;
   leak.confidence = kPriorLeaks_per_km / (kPriorLeaks_per_km + FalseAlarms_per_km(peak.z));
+  TellFlow(peak, bins, best.chainage_m, leak);
   Report(leak);
+}
+
+/// The leak's own power at the hole is what the band has there beyond its background, the trough of the fit.
+/// The level's standard deviation is taken from the fit's residuals on a bin of the top and one of the
+/// trough.
+void MatchedFilter::TellFlow(const Peak& peak, BinRange band, double chainage_m, LeakEstimate& leak) const {
+  if (!pipe_) return;
+  const RoofFit fit = FitRoof(band, chainage_m, roofs_[peak.roof]);
+  const double height_dB = fit.amplitude * roofs_[peak.roof].Level_dB(0);
+  if (!(height_dB > 0)) return;
+  const double background_Pa2 = std::pow(10, 0.1 * fit.trough_dB);
+  const double excess = std::pow(10, 0.1 * height_dB) - 1;
+  const double top_sigma_dB = std::sqrt(CalcQuality(band, chainage_m, roofs_[peak.roof], fit).variance_dB2 /
+                                        static_cast<double>(apart_bins_));
+  const auto flow = CalcLeakFlow(params_.jet, *pipe_, params_.bands.band_low_Hz, params_.bands.band_high_Hz,
+                                 background_Pa2 * excess, top_sigma_dB * (excess + 1) / excess);
+  if (!flow) return;
+  leak.flow_m3_s = flow->flow_m3_s;
+  leak.flow_sigma_dB = flow->sigma_dB;
 }
 
 std::unique_ptr<LeakLocator> Make(const Params& params, const EstimatorStart& start) {

@@ -101,13 +101,14 @@ std::vector<TrueLeak> ToTruth(const std::vector<SurveyLeak>& leaks) {
   return truth;
 }
 
-void AddFound(const ScoredLeak& scored, const TrueLeak& truth, Tally& tally) {
+void AddFound(const ScoredLeak& scored, Tally& tally) {
   ++tally.found;
   tally.errors_m.push_back(*scored.error_m);
   tally.covered += std::abs(*scored.error_m) <= kNormal95 * scored.estimate.sigma_m ? 1 : 0;
-  if (!scored.estimate.flow_m3_s) return;
-  const double error_dB = 20 * std::log10(*scored.estimate.flow_m3_s / truth.flow_m3_s);
+  if (!scored.flow_error_dB) return;
+  const double error_dB = *scored.flow_error_dB;
   tally.flow_errors_dB.push_back(error_dB);
+  tally.flow_covered += std::abs(error_dB) <= kNormal95 * scored.estimate.flow_sigma_dB ? 1 : 0;
 }
 
 void AddRun(const Job& job, const Outcome& outcome, std::size_t locator, Tally& tally) {
@@ -117,7 +118,7 @@ void AddRun(const Job& job, const Outcome& outcome, std::size_t locator, Tally& 
   tally.leaks += static_cast<int>(truth.size());
   tally.false_alarms += score.false_alarms;
   for (const ScoredLeak& scored : score.leaks)
-    if (scored.match) AddFound(scored, truth[std::stoul(*scored.match)], tally);
+    if (scored.match) AddFound(scored, tally);
 }
 
 /// Of one pipe and loudness: the tallies of all locators.

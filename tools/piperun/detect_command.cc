@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -16,12 +17,19 @@ struct DetectArguments {
   std::string audio, pipe, track, locator = "matched_filter", out;
 };
 
+/// Flow in L/min, `sigmas` of its standard deviations away.
+std::string FlowText(const estimator::LeakEstimate& leak, double sigmas) {
+  if (!leak.flow_m3_s) return "-";
+  return FormatDigits(60e3 * *leak.flow_m3_s * std::pow(10, sigmas * leak.flow_sigma_dB / 20), 2);
+}
+
 std::string DescribeDetections(const scenarios::Detections& detections) {
   if (detections.leaks.empty()) return "no leak found\n";
-  Table table({"time s", "chainage m", "sigma m", "confidence"});
+  Table table({"time s", "chainage m", "sigma m", "confidence", "flow L/min", "95 % from", "to"});
   for (const estimator::LeakEstimate& leak : detections.leaks) {
     table.Add({FormatFixed(Seconds(leak.t_cpa), 2), detections.placed ? FormatFixed(leak.chainage_m, 2) : "-",
-               detections.placed ? FormatFixed(leak.sigma_m, 3) : "-", FormatFixed(leak.confidence, 3)});
+               detections.placed ? FormatFixed(leak.sigma_m, 3) : "-", FormatFixed(leak.confidence, 3),
+               FlowText(leak, 0), FlowText(leak, -1.96), FlowText(leak, 1.96)});
   }
   return table.Text();
 }
