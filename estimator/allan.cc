@@ -36,14 +36,21 @@ double SumSquaredDifferences(const double* late, const double* middle, const dou
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-std::size_t Octave(std::int64_t samples) {
-  return static_cast<std::size_t>(std::bit_width(static_cast<std::uint64_t>(samples)));
+constexpr int kBinsPerOctaveBits = 5;
+constexpr double kLeastTold = 0.8;  ///< of a point's differences, by the groups of segments
+
+/// Lengths below 64 by themselves, longer ones 32 to the octave.
+std::size_t FindBin(std::int64_t samples) {
+  const auto n = static_cast<std::uint64_t>(samples);
+  const int excess = std::max(0, static_cast<int>(std::bit_width(n)) - kBinsPerOctaveBits - 1);
+  return (static_cast<std::size_t>(excess) << kBinsPerOctaveBits) + static_cast<std::size_t>(n >> excess);
 }
 
 void AddSegment(std::vector<SegmentGroup>& groups, std::int64_t samples) {
   if (samples == 0) return;
-  if (groups.size() <= Octave(samples)) groups.resize(Octave(samples) + 1);
-  SegmentGroup& group = groups[Octave(samples)];
+  const std::size_t bin = FindBin(samples);
+  if (groups.size() <= bin) groups.resize(bin + 1);
+  SegmentGroup& group = groups[bin];
   ++group.segments;
   group.samples += samples;
 }
@@ -171,6 +178,10 @@ void AllanAccumulator::StartSegment() {
 std::vector<AllanPoint> AllanAccumulator::Points() const {
   std::vector<AllanPoint> points;
   for (const Level& level : levels_) level.AppendPoints(points);
+  const std::vector<SegmentGroup> segments = Segments();
+  std::erase_if(points, [&](const AllanPoint& point) {
+    return CountDifferences(segments, point.cluster.samples) < kLeastTold * static_cast<double>(point.count);
+  });
   return points;
 }
 
@@ -180,6 +191,16 @@ std::vector<SegmentGroup> AllanAccumulator::Segments() const {
   std::erase_if(groups, [](const SegmentGroup& group) { return group.segments == 0; });
   std::reverse(groups.begin(), groups.end());
   return groups;
+}
+
+double CountDifferences(std::span<const SegmentGroup> segments, std::int64_t cluster_samples) {
+  double differences = 0;
+  for (const SegmentGroup& group : segments) {
+    const double all = static_cast<double>(group.samples);
+    const double each = static_cast<double>(group.segments) * static_cast<double>(1 - 2 * cluster_samples);
+    differences += std::max(0.0, all + each);
+  }
+  return differences;
 }
 
 std::vector<AllanPoint> CalcAllanVariance(std::span<const double> rate, const AllanGrid& grid) {

@@ -23,11 +23,14 @@ struct AllanCluster {
 /// full_overlap rounded to whole strides.
 std::vector<AllanCluster> MakeAllanClusters(const AllanGrid& grid, std::int64_t longest);
 
-/// Stretches of a record between gaps, of about one length: those whose lengths lie in one octave.
+/// Stretches of a record between gaps, of about one length: equal below 64 samples, within 3 % above.
 struct SegmentGroup {
   std::int64_t segments = 0;
   std::int64_t samples = 0;  ///< of all of them together
 };
+
+/// Second differences at every sample in segments of their group's mean length.
+double CountDifferences(std::span<const SegmentGroup> segments, std::int64_t cluster_samples);
 
 /// One point of an Allan variance.
 struct AllanPoint {
@@ -57,7 +60,8 @@ class AllanAccumulator {
   /// The next sample does not follow the last one.
   void StartSegment();
 
-  /// The clusters of which there is at least one second difference.
+  /// The clusters of which there are second differences; but not those that only the longest of a group's
+  /// segments hold, as the groups do not tell what those are worth.
   std::vector<AllanPoint> Points() const;
   /// By falling length; a record without gaps is one group.
   std::vector<SegmentGroup> Segments() const;
@@ -73,7 +77,7 @@ class AllanAccumulator {
   double reference_ = 0;  ///< the record's first sample, taken off all: keeps theta small
   std::int64_t samples_ = 0;
   std::int64_t segment_samples_ = 0;
-  std::vector<SegmentGroup> finished_;  ///< by octave
+  std::vector<SegmentGroup> finished_;  ///< by length
 };
 
 /// The Allan variance of a record without gaps that is in memory.

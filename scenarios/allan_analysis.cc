@@ -17,6 +17,7 @@ using estimator::NoiseTerm;
 
 constexpr std::int64_t kFewestSamples = 100;
 constexpr double kWorstMisfit = 5;
+constexpr double kNoNoise = 20;
 constexpr std::int64_t kMostLeftOut = 128;  // samples
 
 /// What is gathered of one channel while the record streams by.
@@ -63,6 +64,20 @@ std::vector<AllanChannel> MakeChannels(const StaticRecord& record, const std::ve
   return channels;
 }
 
+/// A dead axis must not cost the others their analysis; a record of dead axes is refused by the fit.
+void LeaveOutStillChannels(std::vector<AllanChannel>& channels, std::vector<std::string>& notes) {
+  const auto still = [](const AllanChannel& channel) {
+    return std::all_of(channel.points.begin(), channel.points.end(),
+                       [](const estimator::AllanPoint& p) { return p.variance == 0; });
+  };
+  if (std::all_of(channels.begin(), channels.end(), still)) return;
+  for (const AllanChannel& channel : channels) {
+    if (still(channel))
+      notes.push_back(channel.group + " " + channel.axis + " was left out: every sample has the same value");
+  }
+  std::erase_if(channels, still);
+}
+
 void AddTrouble(const RecordTrouble& trouble, const std::string& what, std::vector<std::string>& notes) {
   if (trouble.count == 0) return;
   notes.push_back(std::to_string(trouble.count) + " " + what + " (first: " + trouble.first + ")");
@@ -100,6 +115,15 @@ void AddChannelNotes(const AllanChannel& channel, double period_s, std::vector<s
                     FormatDigits(channel.fit.worst_misfit_tau_s, 3) + " s it lies " +
                     FormatDigits(channel.fit.worst_misfit, 3) + " standard deviations off the fit");
   }
+}
+
+/// Motion that lasts all the time is as rough as its own median; but no noise of IEEE Std 952 looks like it.
+void JudgeMisfit(AllanChannel& channel) {
+  if (channel.fit.worst_misfit < kNoNoise || !channel.unrest.empty()) return;
+  channel.unrest.push_back(
+      "its deviation is that of no noise: at tau = " + FormatDigits(channel.fit.worst_misfit_tau_s, 3) +
+      " s it lies " + FormatDigits(channel.fit.worst_misfit, 3) +
+      " standard deviations off the best sum of terms");
 }
 
 /// The accelerations of three axes at rest make up gravity, whatever the attitude.
@@ -163,6 +187,7 @@ AllanAnalysis AnalyseStaticRecord(StaticRecord& record, const std::string& file,
   }
   analysis.channels = MakeChannels(record, gatherers);
   auto& channels = analysis.channels;
+  LeaveOutStillChannels(channels, analysis.notes);
   RunParallel(
       static_cast<int>(channels.size()), options.jobs, options.stop,
       [&](int i) {
@@ -174,7 +199,9 @@ AllanAnalysis AnalyseStaticRecord(StaticRecord& record, const std::string& file,
         }
       },
       [](double) {});
+  for (const std::string& note : record.notes()) analysis.notes.push_back(note);
   AddTimingNotes(analysis.timing, analysis.notes);
+  for (AllanChannel& channel : channels) JudgeMisfit(channel);
   for (const AllanChannel& channel : channels)
     AddChannelNotes(channel, analysis.timing.period_s, analysis.notes);
   AddGravityNote(channels, analysis.notes);

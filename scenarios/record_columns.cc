@@ -41,10 +41,11 @@ std::vector<std::string_view> SplitFields(std::string_view line) {
   }
 }
 
-/// The first line of a file without a header is all numbers.
+/// The first line of a file without a header is all numbers, finite or not.
 bool IsHeader(const std::vector<std::string_view>& fields) {
-  return std::any_of(fields.begin(), fields.end(),
-                     [](std::string_view f) { return !ParseNumber(Trimmed(f)).has_value(); });
+  return std::any_of(fields.begin(), fields.end(), [](std::string_view f) {
+    return !ParseNumber(Trimmed(f)).has_value() && !IsNotFinite(Trimmed(f));
+  });
 }
 
 std::string NamesOf(const std::vector<HeaderField>& header) {
@@ -68,6 +69,12 @@ std::size_t FindColumn(const std::string& name, const std::vector<HeaderField>& 
   throw InputError("there is no column '" + name + "'" + (near ? "; did you mean '" + *near + "'?" : "") +
                        " (the file has " + std::to_string(header.size()) + ": " + NamesOf(header) + ")",
                    option, where);
+}
+
+std::string Joined(const std::vector<std::string>& notes) {
+  std::string text;
+  for (const std::string& note : notes) text += "; " + note;
+  return text;
 }
 
 const std::string* FindUnit(const StaticRecordOptions& options, const std::string& group) {
@@ -103,14 +110,11 @@ void AddNamedColumns(RecordLayout& layout, const StaticRecordOptions& options,
 
 /// gyro, accel, mag or pressure by what the unit measures; empty for anything else.
 std::string GroupOfUnit(const std::string& unit) {
-  try {
-    const std::string si = SiUnitText(ParseUnit(unit, ""));
-    if (si == "rad/s") return "gyro";
-    if (si == "m/s^2") return "accel";
-    if (si == "T") return "mag";
-    if (si == "Pa") return "pressure";
-  } catch (const InputError&) {  // a header may hold any words; those are no columns of ours
-  }
+  const std::string si = SiUnitText(ParseUnit(unit, ""));
+  if (si == "rad/s") return "gyro";
+  if (si == "m/s^2") return "accel";
+  if (si == "T") return "mag";
+  if (si == "Pa") return "pressure";
   return "";
 }
 
@@ -118,9 +122,13 @@ void AddColumnsByUnit(RecordLayout& layout, const StaticRecordOptions& options,
                       const std::vector<HeaderField>& header) {
   for (std::size_t i = 0; i < header.size(); ++i) {
     if (layout.time_field == i || header[i].unit.empty()) continue;
-    const std::string group = GroupOfUnit(header[i].unit);
-    const std::string* unit = FindUnit(options, group);
-    if (!group.empty()) AddColumn(layout, group, i, header[i], unit ? *unit : header[i].unit);
+    try {
+      const std::string group = GroupOfUnit(header[i].unit);
+      const std::string* unit = FindUnit(options, group);
+      if (!group.empty()) AddColumn(layout, group, i, header[i], unit ? *unit : header[i].unit);
+    } catch (const InputError& e) {
+      layout.notes.push_back("column '" + header[i].name + "' was left out: " + e.problem());
+    }
   }
 }
 
@@ -142,10 +150,19 @@ void FindTime(RecordLayout& layout, const StaticRecordOptions& options,
   }
   if (!layout.time_field) return;
   const std::string& told = header[*layout.time_field].unit;
+  layout.time_unit_told = !options.time_unit.empty() || !told.empty();
   layout.time_unit_ns = TimeUnit_ns(options.time_unit.empty() ? told : options.time_unit, where);
 }
 
 }  // namespace
+
+bool IsNotFinite(std::string_view text) {
+  if (!text.empty() && (text.front() == '-' || text.front() == '+')) text.remove_prefix(1);
+  for (const std::string_view word : {"", "nan", "NaN", "NAN", "inf", "Inf", "INF", "infinity"}) {
+    if (text == word) return true;
+  }
+  return false;
+}
 
 std::pair<double, std::string> ResolveGroupUnit(const std::string& group, const std::string& unit) {
   constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
@@ -179,7 +196,7 @@ RecordLayout ReadRecordLayout(std::string_view first_line, const StaticRecordOpt
     throw InputError(
         "the header does not tell what is measured where; add --columns gyro=.. --unit gyro=.. "
         "(the file has " +
-            std::to_string(header.size()) + " columns: " + NamesOf(header) + ")",
+            std::to_string(header.size()) + " columns: " + NamesOf(header) + ")" + Joined(layout.notes),
         "--columns", where);
   }
   if (!layout.time_field && !options.rate_Hz) {

@@ -13,6 +13,7 @@ constexpr double kBlock_s = 1;
 constexpr std::int64_t kShortestBlock = 16;
 constexpr double kMostShake = 3;
 constexpr double kMostJump = 12;
+constexpr std::int64_t kFewestJumps = 20;  // whose median can be told
 constexpr double kFastestBias_rad_s = 0.52;
 
 std::string At(double time_s) { return FormatDigits(time_s, 6) + " s"; }
@@ -90,7 +91,7 @@ RestFindings RestCheck::Findings() const {
   findings.rms_of_means = std::sqrt(mean_squares_ / n);
   findings.shake_ratio = roughness > 0 ? roughest_ / roughness : 0;
   findings.shake_s = roughest_s_;
-  findings.jump_ratio = jump > 0 ? largest_jump_ / jump : 0;
+  findings.jump_ratio = jump > 0 && jumps_.total() >= kFewestJumps ? largest_jump_ / jump : 0;
   findings.jump_s = largest_jump_s_;
   return findings;
 }

@@ -15,6 +15,7 @@ class LogHistogram {
   void Add(double value);
   /// Within 2.5 %; 0 for an empty one.
   double Median() const;
+  std::int64_t total() const { return total_; }
 
  private:
   std::array<std::int64_t, 4096> counts_{};
@@ -27,7 +28,8 @@ struct RestFindings {
   double rms_of_means = 0;  ///< root mean square of the blocks' means
   double shake_ratio = 0;   ///< roughest block over the median: standard deviations of sample differences
   double shake_s = 0;
-  double jump_ratio = 0;  ///< largest change of the mean from block to block, over the median change
+  /// Largest change of the mean from block to block, over the median change; 0 where those are few.
+  double jump_ratio = 0;
   double jump_s = 0;
 };
 

@@ -72,11 +72,13 @@ double FindTruthRate_Hz(const Scenario& scenario) {
   return rate_Hz;
 }
 
-std::vector<std::string> RateOverrides(const Scenario& scenario, std::optional<double> rate_Hz) {
+/// What a scenario must change to rest: the rate asked for, and no pipe around its magnetometers.
+std::vector<std::string> OverridesAtRest(const Scenario& scenario, std::optional<double> rate_Hz) {
   std::vector<std::string> overrides;
   for (const SensorEntry& entry : scenario.sensors) {
     if (rate_Hz && entry.kind.records() == "imu")
       overrides.push_back("sensors." + entry.name + ".rate_Hz=" + FormatNumber(*rate_Hz));
+    if (entry.kind.kind() == "magnetometer") overrides.push_back("sensors." + entry.name + ".pipe={}");
   }
   return overrides;
 }
@@ -158,7 +160,7 @@ Scenario LoadRestScenario(const std::string& source, const RestOptions& options)
            ", script: rest, rest: {duration_s: " + FormatNumber(options.duration_s) + "}}";
   };
   std::vector<std::string> ours{rest(kMostTruthRate_Hz)};
-  Append(RateOverrides(load(ours), options.rate_Hz), ours);
+  Append(OverridesAtRest(load(ours), options.rate_Hz), ours);
   ours.front() = rest(FindTruthRate_Hz(load(ours)));
   return load(ours);
 }

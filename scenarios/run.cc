@@ -93,6 +93,7 @@ class RunLoop {
       lookahead_ = std::max(lookahead_, channel->lookahead());
       contact_delay_ = std::max(contact_delay_, channel->contact_delay());
       due_.push_back(channel->due());
+      last_due_.push_back(TrueTime::max());
     }
     WriteTextFile(folder.staging() / "estimator_input.yaml",
                   WriteYaml([this](ParamVisitor& v) { input_.Visit(v); }));
@@ -107,7 +108,7 @@ class RunLoop {
       Tell(motion.contact_events());
       Push(motion.state());
     }
-    Deliver(Duration(0));  // no collision can be told any more
+    Drain();
     DeliverReadOuts();
     truth_.WriteUntil(window_.latest_time(), window_);
   }
@@ -135,14 +136,35 @@ class RunLoop {
   void Push(const sim::TruthState& state) {
     window_.Push(state);
     truth_.Watch(window_);
-    Deliver(contact_delay_);
+    Deliver();
     if (window_.last() % 1024 == 0) Report(state);
   }
 
-  void Deliver(Duration contact_delay) {
-    const TrueTime horizon = window_.latest_time() - lookahead_ - contact_delay;
+  void Deliver() {
+    const TrueTime horizon = window_.latest_time() - lookahead_ - contact_delay_;
     DeliverUntil(horizon);
     truth_.WriteUntil(horizon, window_);
+  }
+
+  /// What each channel can still measure, whatever the others look ahead; no collision can be told any more.
+  void Drain() {
+    const TrueTime latest = window_.latest_time();
+    for (std::size_t i = 0; i < due_.size(); ++i) {
+      last_due_[i] = latest - assembly_.channels[i]->lookahead();
+      due_[i] = NextDue(i);
+    }
+    const Duration step = FromSeconds(window_.rate().Period_s());
+    for (TrueTime t = latest - lookahead_ - contact_delay_; t < latest; t += step) {  // as the loop went on
+      DeliverUntil(t);
+      truth_.WriteUntil(t, window_);
+    }
+    DeliverUntil(latest);
+  }
+
+  /// When channel i measures next; never, when the truth ends before that.
+  TrueTime NextDue(std::size_t i) const {
+    const TrueTime due = assembly_.channels[i]->due();
+    return due <= last_due_[i] ? due : TrueTime::max();
   }
 
   /// All measurements complete by `horizon`, by time and then channel name.
@@ -152,7 +174,7 @@ class RunLoop {
       if (first == due_.end() || *first > horizon) return;
       const auto i = static_cast<std::size_t>(first - due_.begin());
       const Measurement* measurement = assembly_.channels[i]->Take(window_);
-      *first = assembly_.channels[i]->due();
+      *first = NextDue(i);
       if (!measurement) continue;
       writers_[i]->Write(*measurement);
       bank_.Ingest(*measurement);
@@ -201,7 +223,8 @@ class RunLoop {
   std::filesystem::path truth_file_;
   Duration lookahead_{0};
   Duration contact_delay_{0};
-  std::vector<TrueTime> due_;  ///< of each channel's next measurement
+  std::vector<TrueTime> due_;       ///< of each channel's next measurement
+  std::vector<TrueTime> last_due_;  // per channel: the truth does not reach further
 };
 
 void DescribeRoute(const Assembly& assembly, RunResult& result) {

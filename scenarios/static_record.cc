@@ -21,6 +21,7 @@ constexpr std::size_t kBlock = 4096;
 constexpr std::size_t kRowsToFindThePeriod = 1024;
 constexpr std::int64_t kRowsBeforeJudging = 1000;
 constexpr double kMostLeftOut = 0.01;
+constexpr double kLongestLikelyPeriod_s = 100;
 
 enum class RowState { kOk, kNotFinite, kCorrupt };
 
@@ -35,14 +36,6 @@ std::string_view Trim(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(" \t\r");
   if (begin == std::string_view::npos) return {};
   return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
-}
-
-bool IsNotFinite(std::string_view text) {
-  if (!text.empty() && (text.front() == '-' || text.front() == '+')) text.remove_prefix(1);
-  for (const std::string_view word : {"", "nan", "NaN", "NAN", "inf", "Inf", "INF", "infinity"}) {
-    if (text == word) return true;
-  }
-  return false;
 }
 
 RowState ReadValue(std::string_view text, double& value) {
@@ -85,15 +78,18 @@ class CsvRecord final : public StaticRecord {
       file_.seekg(0);
     }
     Prefetch();
-    if (options.rate_Hz) nominal_s_ = 1 / *options.rate_Hz;
-    if (!(nominal_s_ > 0))
+    if (layout_.time_field && !layout_.time_unit_told) RefuseUnlikelySeconds();
+    if (options.rate_Hz) grid_.period_s = 1 / *options.rate_Hz;
+    if (waiting_.empty()) throw InputError("there is no row of data", "", path.string());
+    if (!(grid_.period_s > 0))
       throw InputError("the time stamps do not rise; add --rate HZ", "--rate", path.string());
-    stamps_.emplace(nominal_s_);
-    timing_.period_s = nominal_s_;
+    stamps_.emplace(grid_);
+    timing_.period_s = grid_.period_s;
   }
 
   const std::vector<RecordGroup>& groups() const override { return layout_.groups; }
   const RecordTiming& timing() const override { return timing_; }
+  std::vector<std::string> notes() const override { return layout_.notes; }
   double progress() const override { return size_ > 0 ? position_ / size_ : 1; }
 
   bool Next(RecordBlock& block) override {
@@ -134,7 +130,20 @@ class CsvRecord final : public StaticRecord {
       if (row.state != RowState::kCorrupt) stamps_ns.push_back(row.stamp_ns);
       waiting_.push_back(row);
     }
-    nominal_s_ = CalcMedianPeriod_s(stamps_ns);
+    grid_ = FindStampGrid(stamps_ns);
+  }
+
+  /// Stamps whose unit nobody told are taken for seconds, unless that is absurd.
+  void RefuseUnlikelySeconds() const {
+    const bool unreadable = std::all_of(waiting_.begin(), waiting_.end(),
+                                        [](const Row& row) { return row.state == RowState::kCorrupt; });
+    if (!waiting_.empty() && !unreadable && !(grid_.period_s > kLongestLikelyPeriod_s)) return;
+    if (waiting_.empty()) return;
+    throw InputError(unreadable ? "the time stamps are no seconds since 1970; tell their unit: --time-unit ns"
+                                : "the time stamps' unit is not told, and taken for seconds they lie " +
+                                      FormatDigits(grid_.period_s, 3) +
+                                      " s apart; tell it: --time-unit ns, us, ms or s",
+                     "--time-unit", path_.string());
   }
 
   bool TakeRow(Row& row) {
@@ -231,7 +240,8 @@ class CsvRecord final : public StaticRecord {
   std::optional<Row> carried_;  ///< first of the next segment
   std::optional<StampCheck> stamps_;
   RecordTiming timing_;
-  double nominal_s_ = 0, size_ = 0, position_ = 0;
+  StampGrid grid_;
+  double size_ = 0, position_ = 0;
   bool starts_segment_ = false, segment_waits_ = false;
 };
 

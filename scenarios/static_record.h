@@ -25,12 +25,12 @@ struct RecordTrouble {
 
 /// What the reader met and did. Nothing is filled in: a row that is left out, or a gap, ends a segment.
 struct RecordTiming {
-  std::int64_t rows = 0;     ///< samples delivered
-  double period_s = 0;       ///< mean over all intervals that are no gap
-  double jitter_sd_s = 0;    ///< of those intervals
-  double jitter_max_s = 0;   ///< largest departure from the period
-  RecordTrouble gaps;        ///< intervals of more than 1.5 periods
-  double missing_s = 0;      ///< time in gaps, less one period each
+  std::int64_t rows = 0;    ///< samples delivered
+  double period_s = 0;      ///< of the even grid of times that the stamps lie about (scenarios/stamp_check.h)
+  double jitter_sd_s = 0;   ///< of the stamps about it
+  double jitter_max_s = 0;  ///< largest departure
+  RecordTrouble gaps;       ///< where stamps skip times of the grid
+  double missing_s = 0;     ///< periods skipped
   RecordTrouble duplicated;  ///< rows with the stamp of the row before: left out
   RecordTrouble not_finite;  ///< rows with an empty value, nan or inf: left out
   RecordTrouble corrupt;     ///< rows with another number of fields or no number in one: left out
@@ -60,6 +60,8 @@ class StaticRecord {
   /// when more than one row in a hundred had to be left out.
   virtual bool Next(RecordBlock& block) = 0;
   virtual const RecordTiming& timing() const = 0;
+  /// Sentences about what of the file was not taken.
+  virtual std::vector<std::string> notes() const { return {}; }
   /// Share of the file that has been read.
   virtual double progress() const = 0;
 };

@@ -189,7 +189,7 @@ Vector3d StepWhite(TriadErrorState& state, std::int64_t k, const TriadStream& st
                    const TriadErrorCoefficients& c) {
   const auto sample = static_cast<std::uint64_t>(k);
   Vector3d white = Vector3d::Zero();
-  if (c.noise_sd > 0) white = c.noise_sd * Normal3(stream, sample, kNoiseSlot);
+  if (c.noise_sd > 0) white = c.noise_sd * First(SixNormals(stream, sample, kNoiseSlot));
   if (c.quantum_rate > 0) {
     const Vector3d before = state.rounding;
     state.rounding = Even3(stream, sample, kRoundingSlot);

@@ -53,17 +53,13 @@ Vector3d ImuTriad::ReadFormed(const Vector3d& y, unsigned& saturated) const {
   return ReadRegister(y + state_.white, c_.output, saturated);
 }
 
-void ImuTriad::Note(double t_s, const Vector3d& reading) {
-  if (stuck_axis_ < 0 || (state_.holds && t_s >= stuck_from_s_)) return;
-  state_.held = reading[stuck_axis_];
-  state_.holds = true;
-}
-
-Vector3d ImuTriad::HoldStuckAxis(const Vector3d& reading) const {
-  if (stuck_axis_ < 0) return reading;
-  Vector3d held = reading;
-  held[stuck_axis_] = state_.held;
-  return held;
+void ImuTriad::Stick(double t_s, double T_s, Vector3d& reading, std::optional<double>& held) const {
+  if (stuck_axis_ < 0) return;
+  if (held && t_s >= stuck_from_s_) {
+    reading[stuck_axis_] = T_s * *held;
+  } else {
+    held = reading[stuck_axis_] / T_s;
+  }
 }
 
 }  // namespace piperun::sim

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "sim/imu_error.h"
 #include "sim/imu_front_end.h"
 
@@ -30,20 +32,20 @@ class ImuTriad {
   /// The reading formed from such outputs.
   Vector3d ReadFormed(const Vector3d& y, unsigned& saturated) const;
 
-  bool can_stick() const { return stuck_axis_ >= 0; }
-  /// Notes the reading at true time t, for an axis that will be stuck.
-  void Note(double t_s, const Vector3d& reading);
-  /// The reading with a stuck axis at what was noted last.
-  Vector3d HoldStuckAxis(const Vector3d& reading) const;
+  /// Puts the last reading before (or the first one) in place of an axis that is stuck by true time t.
+  void StickRate(double t_s, Vector3d& rate) { Stick(t_s, 1, rate, state_.rate); }
+  /// The same of an increment, whose mean over its T is not the rate where the triad turns meanwhile.
+  void StickIncrement(double t_s, double T_s, Vector3d& sum) { Stick(t_s, T_s, sum, state_.increment); }
 
  private:
+  void Stick(double t_s, double T_s, Vector3d& reading, std::optional<double>& held) const;
+
   struct State {
     TriadErrorState error;
     FrontEndState front_end;
     Vector3d drift = Vector3d::Zero();  ///< of this sample
     Vector3d white = Vector3d::Zero();
-    double held = 0;  ///< last reading of the axis that will be stuck
-    bool holds = false;
+    std::optional<double> rate, increment;  ///< last readings of the axis that will be stuck
   };
 
   TriadStream stream_;

@@ -34,7 +34,9 @@ class Imu final : public Sensor {
         context_(context),
         gyro_(TriadType::kGyroscope, p.gyro, plan_.rate(), context.truth_rate, {context.random, 0}),
         accel_(TriadType::kAccelerometer, p.accel, plan_.rate(), context.truth_rate,
-               {context.random, kTriadSlots}) {}
+               {context.random, kTriadSlots}),
+        by_steps_(gyro_.needs_steps() || accel_.needs_steps() ||
+                  (has_size_effect_ && p.increments && p.coning_sculling)) {}
 
   Rate rate() const override { return plan_.rate(); }
   TrueTime DueTime(std::int64_t k) const override { return plan_.DueTimeOf(k); }
@@ -49,7 +51,7 @@ class Imu final : public Sensor {
     BeginSample(k, interval.end);
     ImuSample sample;
     sample.stamp = context_.clock.ToRobot(DueTime(k));
-    if (gyro_.needs_steps() || accel_.needs_steps()) {
+    if (by_steps_) {
       MeasureSteps(window, interval, sample);
     } else if (point_) {
       MeasureInstant(window, interval.end, sample);
@@ -95,18 +97,14 @@ class Imu final : public Sensor {
     const ImuInterval truth = CalcImuInterval(window, interval.begin, interval.end, X_BS_.p);
     const Vector3d w = R_SB_ * truth.w_mean_rad_s;
     Vector3d f = R_SB_ * truth.f_mean_m_s2;
-    Vector3d size_effect = Vector3d::Zero();
-    if (has_size_effect_) {
-      size_effect = CalcSizeEffect(CalcMeanLeverTensor(window, interval.begin, interval.end));
-      f += size_effect;
-    }
+    if (has_size_effect_) f += CalcSizeEffect(CalcMeanLeverTensor(window, interval.begin, interval.end));
     Saturated saturated;
     sample.w_WS_S_rad_s = gyro_.Read(w, f, saturated.gyro);
     sample.f_WS_S_m_s2 = accel_.Read(f, f, saturated.accel);
     if (params_.increments && params_.coning_sculling) {
       const auto whole = CalcImuIncrements(window, interval.begin, interval.end, X_BS_.p, context_.gravity_W);
       const double T = whole.duration_s;
-      const Vector3d dv = R_SB_ * (whole.dv_m_s / T) + size_effect;
+      const Vector3d dv = R_SB_ * (whole.dv_m_s / T);
       sample.increments = ImuIncrements{T * gyro_.Read(R_SB_ * (whole.dtheta_rad / T), f, saturated.gyro),
                                         T * accel_.Read(dv, f, saturated.accel)};
     } else if (params_.increments) {
@@ -169,14 +167,12 @@ class Imu final : public Sensor {
   }
 
   void HoldStuckAxes(const Interval& interval, ImuSample& sample) {
-    gyro_.Note(Seconds(interval.end), sample.w_WS_S_rad_s);
-    accel_.Note(Seconds(interval.end), sample.f_WS_S_m_s2);
-    sample.w_WS_S_rad_s = gyro_.HoldStuckAxis(sample.w_WS_S_rad_s);
-    sample.f_WS_S_m_s2 = accel_.HoldStuckAxis(sample.f_WS_S_m_s2);
-    if (!sample.increments || !(gyro_.can_stick() || accel_.can_stick())) return;
-    const double T = Seconds(interval.end - interval.begin);
-    sample.increments->dtheta_S_rad = T * gyro_.HoldStuckAxis(sample.increments->dtheta_S_rad / T);
-    sample.increments->dv_S_m_s = T * accel_.HoldStuckAxis(sample.increments->dv_S_m_s / T);
+    const double end_s = Seconds(interval.end), T = Seconds(interval.end - interval.begin);
+    gyro_.StickRate(end_s, sample.w_WS_S_rad_s);
+    accel_.StickRate(end_s, sample.f_WS_S_m_s2);
+    if (!sample.increments) return;
+    gyro_.StickIncrement(end_s, T, sample.increments->dtheta_S_rad);
+    accel_.StickIncrement(end_s, T, sample.increments->dv_S_m_s);
   }
 
   /// The sample, the last one once more, or nothing.
@@ -207,6 +203,7 @@ class Imu final : public Sensor {
   SensorContext context_;
   ImuTriad gyro_;
   ImuTriad accel_;
+  bool by_steps_;  ///< the means over an interval are not enough
   Step step_;
   StrapdownSum strapdown_;
   std::int64_t next_ = 0;

@@ -143,17 +143,16 @@ TEST(RandomStream, NormalsHaveTheTailsOfTheNormalDistribution) {
   }
 }
 
-TEST(RandomStream, SixNormalsFollowFromTheHalvesOfTheBitsByBoxAndMuller) {
+TEST(RandomStream, SixNormalsFollowFromTheHalvesOfTheBitsByInversion) {
   const RandomStream stream(6, "turbulence", 2);
   for (std::uint64_t sample = 0; sample < 2000; ++sample) {
     const auto bits = stream.Bits(sample, 1);
     const auto n = stream.SixNormals(sample, 1);
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double u = (static_cast<double>(bits[i] >> 32) + 0.5) / 4294967296.0;
-      const double v = (static_cast<double>(bits[i] & 0xffffffff) + 0.5) / 4294967296.0;
-      const double radius = std::sqrt(-2 * std::log(u)), angle = 2 * std::numbers::pi * (v - 0.125);
-      EXPECT_NEAR(n[2 * i], radius * std::cos(angle), 4e-15);
-      EXPECT_NEAR(n[2 * i + 1], radius * std::sin(angle), 4e-15);
+    for (std::size_t i = 0; i < 6; ++i) {
+      const std::uint64_t half = i % 2 == 0 ? bits[i / 2] >> 32 : bits[i / 2] & 0xffffffff;
+      const double tail = (static_cast<double>(half & 0x7fffffff) + 0.5) / 4294967296.0;
+      EXPECT_EQ(n[i] > 0, half >= 0x80000000);
+      EXPECT_NEAR(0.5 * std::erfc(std::abs(n[i]) / std::sqrt(2.0)), tail, 1e-10);
     }
   }
 }

@@ -68,6 +68,28 @@ TEST(NonnegativeFit, SolutionsKeepTheKuhnTuckerConditions) {
   }
 }
 
+// a lost packet every half second: the few longest stretches must not be taken for all of them
+TEST(AllanFit, ManyGapsLeaveWhiteNoiseWhatItIs) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const RandomStream random(seed, "gaps", 0);
+    AllanAccumulator accumulator;
+    for (std::uint64_t k = 0; k < 360000; ++k) {
+      if (random.Uniforms(k, 1)[0] < 0.02) {
+        accumulator.StartSegment();
+        continue;
+      }
+      const double y = 0.1 * random.SixNormals(k, 0)[0];
+      accumulator.Append({&y, 1});
+    }
+    const AllanFit fit = FitAllan(accumulator.Points(), accumulator.Segments(), 0.01, {});
+    const FittedTerm& white = fit.terms[Index(NoiseTerm::kWhite)];
+    EXPECT_NEAR(white.value, 0.01, 1e-4) << seed;
+    EXPECT_TRUE(white.identifiable) << seed;
+    EXPECT_LT(white.interval.high - white.interval.low, 2e-4) << seed;
+    EXPECT_FALSE(fit.terms[Index(NoiseTerm::kQuantisation)].identifiable) << seed;
+  }
+}
+
 TEST(AllanFit, FindsEveryTermInTheCurveOfIeee952) {
   // the curve itself, without noise: hand-written continuous forms, at clusters where they equal the discrete
   const double Q = 3e-4, N = 0.01, B = 0.02, K = 2e-3, R = 2e-5, dt = 1e-4;

@@ -10,6 +10,7 @@
 #include "acoustics/audio_file.h"
 #include "base/check.h"
 #include "base/number.h"
+#include "base/random.h"
 
 namespace piperun::scenarios {
 namespace {
@@ -126,8 +127,37 @@ TEST_F(StaticRecordTest, JitterIsMeasured) {
   const Whole whole = ReadAll(File(text));
   EXPECT_EQ(whole.segments, std::vector<std::size_t>{5000});
   EXPECT_NEAR(whole.timing.period_s, 0.01, 1e-6);
-  EXPECT_NEAR(whole.timing.jitter_sd_s, 0.001, 1e-6);
-  EXPECT_NEAR(whole.timing.jitter_max_s, 0.001, 1e-6);
+  EXPECT_NEAR(whole.timing.jitter_sd_s, 0.0005, 1e-5);  // to either side of the middle
+  EXPECT_NEAR(whole.timing.jitter_max_s, 0.0005, 1e-5);
+}
+
+/// Rows with stamps that scatter evenly by up to plus and minus `jitter` periods of 10 ms.
+std::string JitteredRows(double jitter, double loss) {
+  const RandomStream random(5, "stamps", 0);
+  std::string text = kHeader;
+  for (std::int64_t k = 0; k < 100000; ++k) {
+    const auto u = random.Uniforms(static_cast<std::uint64_t>(k), 0);
+    if (u[1] < loss) continue;
+    const double place = static_cast<double>(k) + jitter * (2 * u[0] - 1);
+    text += std::to_string(std::llround(place * 1e7) + 1000000000) + ",1,x," + std::to_string(k) + "\n";
+  }
+  return text;
+}
+
+TEST_F(StaticRecordTest, StampsThatJitterByFourTenthsOfAPeriodAreNoGaps) {
+  for (const double jitter : {0.2, 0.3, 0.4}) {
+    const Whole whole = ReadAll(File(JitteredRows(jitter, 0)));
+    EXPECT_NEAR(whole.timing.period_s, 0.01, 1e-7) << jitter;
+    EXPECT_EQ(whole.timing.gaps.count, 0) << jitter;
+    EXPECT_NEAR(whole.timing.jitter_sd_s, 0.01 * jitter / std::sqrt(3.0), 1e-4) << jitter;
+  }
+}
+
+TEST_F(StaticRecordTest, LossesAreTheGapsThatJitterIsNot) {
+  const Whole whole = ReadAll(File(JitteredRows(0.3, 0.02)));
+  EXPECT_NEAR(whole.timing.period_s, 0.01, 1e-7);
+  EXPECT_NEAR(static_cast<double>(whole.timing.gaps.count), 0.02 * 0.98 * 100000, 5 * std::sqrt(2000.0));
+  EXPECT_NEAR(whole.timing.missing_s, 0.01 * (100000 - static_cast<double>(whole.timing.rows)), 0.011);
 }
 
 TEST_F(StaticRecordTest, PlainFilesNeedColumnsUnitsAndARate) {

@@ -94,7 +94,9 @@ void AddSimulateStaticCommand(CLI::App& app, Display& display, int& exit_code) {
       ->add_option(
           "SOURCE", arguments->source,
           "Scenario file or name, a preset of sensors by name or file (as of `piperun allan --preset`), or "
-          "a file that holds only `sensors:`")
+          "a file that holds only `sensors:`. What needs pipes is left out: hydrophones, markers, the pipe "
+          "around "
+          "a magnetometer")
       ->required();
   command->add_option("--duration", arguments->duration, "How long: number with s, min, h or d, e.g. 2.5h")
       ->required();
