@@ -187,6 +187,7 @@ class CfarRatio final : public FrameLocator {
     leak.t_cpa = place.time;
     leak.chainage_m = moment / mass;
     leak.sigma_m = std::hypot(width_m_ * peak.scatter_dB / peak.height_dB, place.chainage_sd_m);
+    leak.interval = CalcNormalInterval(leak.chainage_m, leak.sigma_m);
     leak.p_W = place.p_W;
     leak.confidence = kPriorLeaks_per_km / (kPriorLeaks_per_km + FalseAlarms_per_km(peak.z));
     Report(leak);
