@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <cmath>
-#include <numbers>
 
 namespace piperun::estimator {
 namespace {
@@ -42,14 +41,6 @@ Eigen::MatrixXd MakeNuisances(Eigen::Index bins) {
 }
 
 }  // namespace
-
-double CalcFrameScatter_dB(double low_Hz, double high_Hz, double frame_s) {
-  const auto integral = [&](double power) {  // of f^-power
-    return (std::pow(low_Hz, 1 - power) - std::pow(high_Hz, 1 - power)) / (power - 1);
-  };
-  const double bandwidth_Hz = integral(2.5) * integral(2.5) / integral(5);
-  return 10 / std::numbers::ln10 / std::sqrt(bandwidth_Hz * frame_s);
-}
 
 DriftFilter::DriftFilter(const LevelModel& model, const std::vector<Roof>& roofs, const Window& window) {
   const Eigen::Index bins = window.behind + window.ahead + 1, all = 2 * window.half + 1;

@@ -18,11 +18,6 @@ struct LevelModel {
   double reference_scatter_dB = 1.1;  ///< the same of the reference band
 };
 
-/// Scatter of the level of one frame of Gaussian noise, 10/ln 10 / sqrt(B T): T the frame, B the statistical
-/// bandwidth (int S)^2 / int S^2 over the band of noise that falls by 25 dB per decade (Bendat & Piersol,
-/// Random Data, section 8.2.1).
-double CalcFrameScatter_dB(double low_Hz, double high_Hz, double frame_s);
-
 /// Generalised least squares for a roof on drifting levels: with the levels of both bands y in a window of
 /// bins, their covariance C under LevelModel, and constant and trend of each band as nuisances H,
 ///

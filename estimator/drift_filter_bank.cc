@@ -7,8 +7,8 @@
 namespace piperun::estimator {
 namespace {
 
-constexpr double kFramesPerBin[] = {1, 3, 10};  // fast, usual and slow balls
-constexpr std::int64_t kSteps = 6;              // of the window's half: how much of it has been heard
+constexpr double kFramesPerBin[] = {1, 3, 10, 30, 100};  // fast balls and short bins to slow and long
+constexpr std::int64_t kSteps = 6;  // of the window's half: how much of it has been heard
 
 }  // namespace
 
@@ -16,6 +16,7 @@ DriftFilterBank::DriftFilterBank(const LevelModel& model, std::vector<Roof> roof
     : model_(model), roofs_(std::move(roofs)), geometry_(geometry) {
   filters_.resize(std::size(kFramesPerBin) * (kSteps + 1) * (kSteps + 1));
   levels_dB_.setZero(2 * (2 * geometry.half + 1));
+  alone_dB_ = levels_dB_;
 }
 
 bool DriftFilterBank::Look(const SoundProfile& profile, std::int64_t bin) {
@@ -74,6 +75,14 @@ const DriftFilter& DriftFilterBank::FilterFor(double frames_per_bin, std::int64_
                                              kFramesPerBin[speed]});
   }
   return *filters_[at];
+}
+
+double DriftFilterBank::CalcCrosstalk(std::size_t roof, std::size_t other, std::int64_t offset) {
+  for (std::int64_t i = 0; i <= 2 * geometry_.half; ++i) {
+    const auto bins = static_cast<double>(i - geometry_.half - offset);
+    alone_dB_[i] = roofs_[other].Level_dB(bins * geometry_.bin_m);
+  }
+  return current_->Eval(roof, alone_dB_).z;
 }
 
 double DriftFilterBank::CalcLogLikelihood(double noise_scale) const {

@@ -11,7 +11,7 @@ namespace piperun::estimator {
 
 /// Drift filters of a bank of roofs, moved along a profile. The window reaches `half` bins to both sides;
 /// near the ends of a record, and at other speeds, other filters are right: they are made when they are first
-/// needed, in steps of a sixth of the window and for 1, 3 and 10 frames per bin.
+/// needed, in steps of a sixth of the window and for 1, 3, 10, 30 and 100 frames per bin.
 class DriftFilterBank {
  public:
   struct Geometry {
@@ -27,6 +27,9 @@ class DriftFilterBank {
   bool Look(const SoundProfile& profile, std::int64_t bin);
   /// The response of a roof on top of the bin that was looked at last.
   DriftFilter::Response Eval(std::size_t roof) const { return current_->Eval(roof, levels_dB_); }
+  /// What a roof on top of the bin that was looked at last would respond to another roof alone, of amplitude
+  /// one and `offset` bins further on: z.
+  double CalcCrosstalk(std::size_t roof, std::size_t other, std::int64_t offset);
   /// log of the mean over the bank of exp(z^2 / (2 scale^2)): the likelihood of a leak at that bin, height
   /// free, over none, with the shape of the roof marginalised.
   double CalcLogLikelihood(double noise_scale) const;
@@ -42,6 +45,7 @@ class DriftFilterBank {
   std::vector<std::optional<DriftFilter>> filters_;
   const DriftFilter* current_ = nullptr;
   Eigen::VectorXd levels_dB_;  // the window's, band first, then reference
+  Eigen::VectorXd alone_dB_;   // scratch: of one roof
 };
 
 }  // namespace piperun::estimator

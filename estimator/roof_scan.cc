@@ -12,8 +12,10 @@ constexpr double kApartShare = 0.25;      // of the window, within which only th
 constexpr double kFreeShare = 0.4;        // of the window: a neighbour further off than this does not disturb
 constexpr double kNeighbourShare = 0.45;  // of the way to the next leak
 constexpr double kBandShare = 0.5;        // of the ratio's roof that the band alone must show
+constexpr double kRoofError = 0.1;        // of a roof, that the bank's best does not describe
 constexpr double kMinZ = 3;               // below this a peak is not worth remembering
 constexpr double kMaxReach_m = 200;
+constexpr std::int64_t kNoiseReaches = 10;  // before a place, from which the noise is told
 constexpr double kHeights_dB[] = {3, 20};
 
 double Reach_m(const std::vector<double>& slopes_dB_m) {
@@ -46,9 +48,10 @@ RoofScan::RoofScan(const ScanParams& params, const LevelModel& model, Sink sink)
       bank_(model, MakeRoofs(params.slopes_dB_m), {reach_bins_, apart_bins_, profile_.bin_m()}),
       // places a decibel's fall apart are told apart by the steepest roof
       trials_per_km_(1000 * params.slopes_dB_m.back() / 4.34 * static_cast<double>(bank_.roofs().size())),
-      noise_(10 * reach_bins_, reach_bins_),
+      noise_((kNoiseReaches + 6) * reach_bins_, reach_bins_),
       scored_(2 * static_cast<std::size_t>(apart_bins_) + 1) {
   peaks_.reserve(64);
+  settled_.reserve(64);
   log_likelihood_.reserve(scored_.size());
 }
 
@@ -78,7 +81,7 @@ void RoofScan::ScanUpTo(std::int64_t bin) {
 }
 
 RoofScan::Peak RoofScan::Score(std::int64_t bin) {
-  Peak peak{bin, 0, 0};
+  Peak peak{bin, 0, 0, 0};
   if (!bank_.Look(profile_, bin)) return peak;
   DriftFilter::Response best;
   for (std::size_t i = 0; i < bank_.roofs().size(); ++i) {
@@ -87,6 +90,7 @@ RoofScan::Peak RoofScan::Score(std::int64_t bin) {
     if (response.z <= best.z) continue;
     best = response;
     peak.roof = i;
+    peak.amplitude = response.amplitude;
   }
   if (best.amplitude * bank_.roofs()[peak.roof].Level_dB(0) >= params_.min_height_dB) peak.z = best.z;
   return peak;
@@ -110,11 +114,39 @@ bool RoofScan::BandRises(const Peak& peak) const {
   return rise(Channel::kBand) >= kBandShare * rise(Channel::kRatio);
 }
 
+/// From the stretch before, and before this leak could be heard; 1 near the beginning.
+double RoofScan::CalcNoiseScale(const Peak& peak) {
+  const std::int64_t last = peak.bin - 2 * reach_bins_;
+  return noise_.Calc(last - kNoiseReaches * reach_bins_, last).value_or(1);
+}
+
+double RoofScan::CalcOwnZ(const Peak& peak) {
+  if (!bank_.Look(profile_, peak.bin)) return 0;
+  double z = peak.z, variance = 1;
+  const auto take_off = [&](const Peak& other) {
+    const std::int64_t offset = other.bin - peak.bin;
+    if (other.z <= peak.z || std::abs(offset) > 2 * reach_bins_) return;
+    z -= other.amplitude * bank_.CalcCrosstalk(peak.roof, other.roof, offset);
+    const std::int64_t outside = std::max<std::int64_t>(0, std::abs(offset) - reach_bins_);
+    const Roof& roof = bank_.roofs()[other.roof];
+    const double seen = roof.Level_dB(static_cast<double>(outside) * profile_.bin_m()) / roof.Level_dB(0);
+    variance += std::pow(kRoofError * seen * other.z, 2);
+  };
+  std::for_each(settled_.begin(), settled_.end(), take_off);
+  std::for_each(peaks_.begin(), peaks_.end(), take_off);
+  return z / std::sqrt(variance);
+}
+
 void RoofScan::ReportSettled(std::int64_t up_to_bin) {
   while (!peaks_.empty() && peaks_.front().bin <= up_to_bin) {
     Peak peak = peaks_.front();
     peaks_.erase(peaks_.begin());
-    peak.z /= noise_.Before(peak.bin - 2 * reach_bins_);  // where this leak could not be heard
+    const Peak as_heard = peak;
+    // a level model that promises more noise than there is stays as it is: false alarms are held to the
+    // promise
+    peak.z = CalcOwnZ(peak) / std::max(1.0, CalcNoiseScale(peak));
+    std::erase_if(settled_, [&](const Peak& p) { return peak.bin - p.bin > 2 * reach_bins_; });
+    settled_.push_back(as_heard);
     if (!IsLeak(peak)) continue;
     ReportPeak(peak, CalcFreeReach_m(peak));
     last_reported_ = peak.bin;
@@ -134,7 +166,7 @@ double RoofScan::CalcFreeReach_m(const Peak& peak) const {
 }
 
 std::optional<PlacePosterior> RoofScan::Localise(const Peak& peak) {
-  const double scale = noise_.Before(peak.bin - 2 * reach_bins_);
+  const double scale = CalcNoiseScale(peak);
   const std::int64_t half = std::max<std::int64_t>(1, apart_bins_ / 2);
   log_likelihood_.clear();
   const std::int64_t first = std::max(peak.bin - half, profile_.first() + apart_bins_);
@@ -184,7 +216,7 @@ void RoofScan::ReportPeak(const Peak& peak, double reach_m) {
   leak.z = peak.z;
   leak.false_alarms_per_km = FalseAlarms_per_km(peak.z);
   leak.apart_m = profile_.bin_m() * static_cast<double>(apart_bins_);
-  leak.level = MeasureLevel(peak, Window(peak.bin, reach_m, Channel::kBand), posterior->mean_m);
+  leak.level = MeasureLevel(peak, Window(peak.bin, reach_m, Channel::kPower), posterior->mean_m);
   sink_(leak);
 }
 

@@ -47,9 +47,15 @@ struct ScanParams {
 ///
 /// fall below the accepted rate are leaks, if the band itself rises there: the reference band carries
 /// further, so some way off a loud leak the ratio falls, and the shoulder before that looks like a roof
-/// although the band is flat. The place's posterior comes from z at all places of the peak. Where a
-/// neighbour's sound reaches into that window the top of the roof alone is fitted, once to the ratio of the
-/// bands and once to the band, and the smaller variance decides.
+/// although the band is flat. What stronger leaks near by make of a place is taken off its z first,
+///
+///     z' = (z - sum c_j A_j) / sqrt(1 + sum (e h_j z_j)^2)
+///
+/// c_j the response to the roof of leak j alone, A_j its amplitude, h_j the part of its height that it still
+/// has where the window ends, e = 0.1 the part of a roof that the bank does not describe. The place's
+/// posterior comes from z at all places of the peak. Where a neighbour's sound reaches into that window the
+/// top of the roof alone is fitted, once to the ratio of the bands and once to the band, and the smaller
+/// variance decides.
 class RoofScan {
  public:
   using Sink = std::function<void(const ScannedLeak&)>;
@@ -67,6 +73,7 @@ class RoofScan {
     std::int64_t bin = 0;
     double z = 0;
     std::size_t roof = 0;
+    double amplitude = 0;
   };
 
   void ScanUpTo(std::int64_t bin);
@@ -76,6 +83,8 @@ class RoofScan {
   bool BandRises(const Peak& peak) const;
   bool IsLeak(const Peak& peak) const { return FalseAlarms_per_km(peak.z) <= params_.false_alarms_per_km; }
   double FalseAlarms_per_km(double z) const { return trials_per_km_ * CalcNormalTail(z); }
+  double CalcNoiseScale(const Peak& peak);
+  double CalcOwnZ(const Peak& peak);
   void ReportSettled(std::int64_t up_to_bin);
   /// How far a fit may reach before it meets the neighbours that are leaks.
   double CalcFreeReach_m(const Peak& peak) const;
@@ -98,7 +107,8 @@ class RoofScan {
   std::optional<std::int64_t> next_scan_;
   std::vector<Peak> scored_;  // ring: the last places, twice apart_bins_ and one
   std::size_t next_scored_ = 0;
-  std::vector<Peak> peaks_;  // of the last stretch, not yet reported, in order of bin
+  std::vector<Peak> peaks_;    // of the last stretch, not yet reported, in order of bin
+  std::vector<Peak> settled_;  // those before them that reach here
   std::optional<std::int64_t> last_reported_;
   std::vector<double> log_likelihood_;  // scratch
 };

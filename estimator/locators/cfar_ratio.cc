@@ -77,7 +77,7 @@ struct Peak {
 class CfarRatio final : public FrameLocator {
  public:
   CfarRatio(const CfarRatioParams& params, const EstimatorStart& start)
-      : FrameLocator(params.bands),
+      : FrameLocator(BandFrames(params.bands)),
         params_(params),
         width_m_(ChooseWidth_m(params, start)),
         side_bins_(kBinsPerCell * (params.guard_cells + params.reference_cells) + kBinsPerCell),
@@ -88,9 +88,9 @@ class CfarRatio final : public FrameLocator {
 
  private:
   void Consume(const LocatedFrame& frame) override {
-    const double band_dB = 10 * std::log10(frame.sound.power_Pa2);
-    const double ratio_dB = band_dB - 10 * std::log10(frame.sound.reference_power_Pa2);
-    const auto passed = gate_.Step({frame.ball, {ratio_dB, band_dB, band_dB - ratio_dB}}, band_dB);
+    const double band_dB = 10 * std::log10(frame.sound.noise_Pa2);
+    const double ratio_dB = band_dB - 10 * std::log10(frame.sound.reference_noise_Pa2);
+    const auto passed = gate_.Step({frame.ball, {ratio_dB, band_dB, band_dB - ratio_dB, band_dB}}, band_dB);
     if (!passed) return;
     profile_.Add(passed->ball, passed->levels_dB);
     TestUpTo(profile_.last() - side_bins_ - 1);

@@ -66,9 +66,9 @@ std::vector<double> SlopesAround(double nominal_dB_m) {
 LevelModel MakeLevelModel(const MatchedFilterParams& params) {
   const BandParams& bands = params.bands;
   LevelModel model = params.background;
-  model.band_scatter_dB = CalcFrameScatter_dB(bands.band_low_Hz, bands.band_high_Hz, bands.frame_s);
+  model.band_scatter_dB = CalcLineFreeScatter_dB(bands.band_low_Hz, bands.band_high_Hz, bands.frame_s);
   model.reference_scatter_dB =
-      CalcFrameScatter_dB(bands.reference_low_Hz, bands.reference_high_Hz, bands.frame_s);
+      CalcLineFreeScatter_dB(bands.reference_low_Hz, bands.reference_high_Hz, bands.frame_s);
   return model;
 }
 
@@ -108,7 +108,7 @@ class MatchedFilter final : public FrameLocator {
 };
 
 MatchedFilter::MatchedFilter(const MatchedFilterParams& params, const EstimatorStart& start)
-    : FrameLocator(params.bands), params_(params), map_(start.map) {
+    : FrameLocator(BandFrames(params.bands)), params_(params), map_(start.map) {
   const double middle_Hz = std::sqrt(params.bands.band_low_Hz * params.bands.band_high_Hz);
   const auto classes = map_ ? ClassifyWalls(*map_, middle_Hz) : std::vector<WallClass>{};
   if (params.slope_dB_m) {
@@ -127,9 +127,11 @@ void MatchedFilter::AddListener(std::vector<double> slopes_dB_m, std::optional<W
 }
 
 void MatchedFilter::Consume(const LocatedFrame& frame) {
-  const double band_dB = 10 * std::log10(frame.sound.power_Pa2);
-  const double reference_dB = 10 * std::log10(frame.sound.reference_power_Pa2);
-  const Heard heard{frame.ball, {band_dB - params_.reference_weight * reference_dB, band_dB, reference_dB}};
+  const double band_dB = 10 * std::log10(frame.sound.noise_Pa2);
+  const double reference_dB = 10 * std::log10(frame.sound.reference_noise_Pa2);
+  const double power_dB = 10 * std::log10(frame.sound.power_Pa2);
+  const Heard heard{frame.ball,
+                    {band_dB - params_.reference_weight * reference_dB, band_dB, reference_dB, power_dB}};
   const auto unstruck = band_gate_.Step(heard, band_dB);
   if (!unstruck) return;
   const auto passed = reference_gate_.Step(*unstruck, unstruck->levels_dB[2]);

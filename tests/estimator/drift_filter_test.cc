@@ -64,11 +64,5 @@ TEST(DriftFilter, WhiteScatterGivesAStandardNormal) {
   EXPECT_NEAR(squares / 4000, 1, 0.112);
 }
 
-TEST(FrameScatter, FollowsTheBandwidthOfFallingNoise) {
-  // by hand: int f^-2.5 over 1 to 4 kHz = 0.58333, int f^-5 = 0.24902 (kHz units), B = 1.36645 kHz,
-  // 4.34294 / sqrt(1366.45 0.05) = 0.52541 dB
-  EXPECT_NEAR(CalcFrameScatter_dB(1000, 4000, 0.05), 0.5254, 1e-4);
-}
-
 }  // namespace
 }  // namespace piperun::estimator
