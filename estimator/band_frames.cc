@@ -58,7 +58,6 @@ void BandFrames::Prepare(const AudioBlock& block) {
                      "frame_s");
   }
   band_ = ButterworthBand(params_.band_low_Hz, params_.band_high_Hz, rate_Hz_);
-  reference_ = ButterworthBand(params_.reference_low_Hz, params_.reference_high_Hz, rate_Hz_);
 }
 
 BandFrame BandFrames::Cut(RobotTime block_stamp, std::int64_t samples_before_stamp) {
@@ -69,12 +68,11 @@ BandFrame BandFrames::Cut(RobotTime block_stamp, std::int64_t samples_before_sta
   const BandFrame frame{
       block_stamp - to_last - half_frame,
       power_ / n,
-      reference_power_ / n,
       rectified_ / n,
       spectrum_->CalcMeanSquare_Pa2(params_.band_low_Hz, params_.band_high_Hz),
       spectrum_->CalcMeanSquare_Pa2(params_.reference_low_Hz, params_.reference_high_Hz),
   };
-  power_ = reference_power_ = rectified_ = 0;
+  power_ = rectified_ = 0;
   count_ = 0;
   return frame;
 }

@@ -24,19 +24,16 @@ struct BandParams {
   void Visit(ParamVisitor& v);
 };
 
-/// One short stretch of the hydrophone's record. Powers are those behind Butterworth filters; the noise's
-/// come from LineFreeLevels.
+/// One short stretch of the hydrophone's record: the whole band behind a Butterworth filter, the noise in
+/// both bands by LineFreeLevels.
 struct BandFrame {
   RobotTime time{};                ///< its middle
   double power_Pa2 = 0;            ///< mean square in the band
-  double reference_power_Pa2 = 0;  ///< mean square in the reference band
   double rectified_Pa = 0;         ///< mean absolute value in the band
   double noise_Pa2 = 0;            ///< mean square in the band without its tones
   double reference_noise_Pa2 = 0;  ///< the same of the reference band
 
-  bool silent() const {
-    return !(power_Pa2 > 0 && reference_power_Pa2 > 0 && noise_Pa2 > 0 && reference_noise_Pa2 > 0);
-  }
+  bool silent() const { return !(power_Pa2 > 0 && noise_Pa2 > 0 && reference_noise_Pa2 > 0); }
 };
 
 /// Cuts audio into frames and measures two bands in each. Frames begin at multiples of their length, counted
@@ -65,9 +62,7 @@ class BandFrames {
   void Prepare(const AudioBlock& block);
   void Accumulate(double pressure_Pa) {
     const double in_band = band_.Step(pressure_Pa);
-    const double in_reference = reference_.Step(pressure_Pa);
     power_ += in_band * in_band;
-    reference_power_ += in_reference * in_reference;
     rectified_ += in_band < 0 ? -in_band : in_band;
     samples_Pa_[static_cast<std::size_t>(count_++)] = static_cast<float>(pressure_Pa);
   }
@@ -76,10 +71,10 @@ class BandFrames {
   BandParams params_;
   double rate_Hz_ = 0;
   std::int64_t frame_samples_ = 0;
-  BiquadCascade band_, reference_;
+  BiquadCascade band_;
   std::optional<LineFreeLevels> spectrum_;
   std::vector<float> samples_Pa_;
-  double power_ = 0, reference_power_ = 0, rectified_ = 0;
+  double power_ = 0, rectified_ = 0;
   std::int64_t count_ = 0;
 };
 

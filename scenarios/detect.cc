@@ -168,8 +168,8 @@ class LevelLog {
  private:
   void Add(const estimator::BandFrame& frame) {
     if (count_ == 0) begin_s_ = Seconds(frame.time);
-    band_Pa2_ += frame.power_Pa2;
-    reference_Pa2_ += frame.reference_power_Pa2;
+    band_Pa2_ += frame.noise_Pa2;
+    reference_Pa2_ += frame.reference_noise_Pa2;
     ++count_;
     if (Seconds(frame.time) - begin_s_ >= stretch_s_) Cut();
   }

@@ -77,7 +77,7 @@ LeakScore ScoreLeaks(const std::vector<estimator::LeakEstimate>& estimates,
   LeakScore score;
   std::vector<bool> found(truth.size(), false);
   for (const auto& estimate : estimates) {
-    score.leaks.push_back({estimate, std::nullopt, std::nullopt, std::nullopt});
+    score.leaks.push_back({estimate, std::nullopt, std::nullopt});
   }
   for (const Pair& pair : PairsByDistance(estimates, truth, match_radius_m)) {
     ScoredLeak& scored = score.leaks[pair.estimate];
@@ -85,6 +85,7 @@ LeakScore ScoreLeaks(const std::vector<estimator::LeakEstimate>& estimates,
     found[pair.leak] = true;
     scored.match = truth[pair.leak].id;
     scored.error_m = scored.estimate.chainage_m - *truth[pair.leak].chainage_m;
+    scored.covered = scored.estimate.interval.Holds(*truth[pair.leak].chainage_m);
     if (scored.estimate.flow_m3_s && truth[pair.leak].flow_m3_s > 0)
       scored.flow_error_dB = 20 * std::log10(*scored.estimate.flow_m3_s / truth[pair.leak].flow_m3_s);
   }

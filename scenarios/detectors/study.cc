@@ -41,17 +41,18 @@ struct Job {
 };
 
 struct Outcome {
-  std::vector<SurveyLeak> leaks;
+  std::vector<TrueLeak> leaks;
   std::vector<std::vector<estimator::LeakEstimate>> found;  // per locator
 };
 
 std::vector<Job> PlanPipe(const StudiedPipe& pipe, const StudySize& size, std::uint64_t& run) {
   std::vector<Job> jobs;
   const int per_run = std::max(1, static_cast<int>(kRun_m / pipe.spacing_m));
-  for (const double snr_dB : pipe.snr_dB) {
-    for (int left = size.leaks_per_cell; left > 0; left -= per_run) {
+  for (const Cell& cell : pipe.cells) {
+    for (int left = std::max(1, static_cast<int>(std::lround(cell.share * size.leaks_per_cell))); left > 0;
+         left -= per_run) {
       const int leaks = std::min(left, per_run);
-      jobs.push_back({&pipe, snr_dB, run++, leaks, leaks * pipe.spacing_m});
+      jobs.push_back({&pipe, cell.snr_dB, run++, leaks, leaks * pipe.spacing_m});
     }
   }
   for (double left_m = 1000 * size.quiet_km; left_m > 0; left_m -= kRun_m)
@@ -66,12 +67,22 @@ Survey MakeJobSurvey(const Job& job, std::uint64_t seed) {
   for (int i = 0; i < job.leaks; ++i) {
     const double u = random.Uniforms(static_cast<std::uint64_t>(i), 0)[0];
     const double s_m = (i + 0.3 + 0.4 * u) * job.pipe->spacing_m;
-    survey.leaks.push_back({s_m, *job.snr_dB, 0});
+    const double loudness_dB = kLoudness_dB * random.Normals(static_cast<std::uint64_t>(i), 1)[0];
+    survey.leaks.push_back({s_m, *job.snr_dB, loudness_dB});
   }
-  // one loudness, one flow
-  const double flow_m3_s = job.snr_dB ? CalcFlowOfSnr_m3_s(survey, *job.snr_dB) : 0;
-  for (SurveyLeak& leak : survey.leaks) leak.flow_m3_s = flow_m3_s;
   return survey;
+}
+
+std::vector<TrueLeak> ToTruth(const Survey& survey) {
+  std::vector<TrueLeak> truth;
+  for (const SurveyLeak& leak : survey.leaks) {
+    TrueLeak known;
+    known.id = std::to_string(truth.size());
+    known.chainage_m = leak.chainage_m;
+    known.flow_m3_s = MakeJetOfSnr(survey, leak.snr_dB, leak.loudness_dB).flow_m3_s;
+    truth.push_back(known);
+  }
+  return truth;
 }
 
 Outcome Listen(const Job& job, std::uint64_t seed) {
@@ -84,27 +95,15 @@ Outcome Listen(const Job& job, std::uint64_t seed) {
     listening.push_back(locators.back().get());
   }
   RunSurvey(survey, seed, job.run, listening);
-  Outcome outcome{survey.leaks, {}};
+  Outcome outcome{ToTruth(survey), {}};
   for (const auto& locator : locators) outcome.found.push_back(locator->leaks());
   return outcome;
-}
-
-std::vector<TrueLeak> ToTruth(const std::vector<SurveyLeak>& leaks) {
-  std::vector<TrueLeak> truth;
-  for (std::size_t i = 0; i < leaks.size(); ++i) {
-    TrueLeak leak;
-    leak.id = std::to_string(i);
-    leak.chainage_m = leaks[i].chainage_m;
-    leak.flow_m3_s = leaks[i].flow_m3_s;
-    truth.push_back(leak);
-  }
-  return truth;
 }
 
 void AddFound(const ScoredLeak& scored, Tally& tally) {
   ++tally.found;
   tally.errors_m.push_back(*scored.error_m);
-  tally.covered += std::abs(*scored.error_m) <= kNormal95 * scored.estimate.sigma_m ? 1 : 0;
+  tally.covered += *scored.covered ? 1 : 0;
   if (!scored.flow_error_dB) return;
   const double error_dB = *scored.flow_error_dB;
   tally.flow_errors_dB.push_back(error_dB);
@@ -112,10 +111,9 @@ void AddFound(const ScoredLeak& scored, Tally& tally) {
 }
 
 void AddRun(const Job& job, const Outcome& outcome, std::size_t locator, Tally& tally) {
-  const auto truth = ToTruth(outcome.leaks);
-  const LeakScore score = ScoreLeaks(outcome.found[locator], truth, job.pipe->match_radius_m);
+  const LeakScore score = ScoreLeaks(outcome.found[locator], outcome.leaks, job.pipe->match_radius_m);
   tally.km += job.length_m / 1000;
-  tally.leaks += static_cast<int>(truth.size());
+  tally.leaks += static_cast<int>(outcome.leaks.size());
   tally.false_alarms += score.false_alarms;
   for (const ScoredLeak& scored : score.leaks)
     if (scored.match) AddFound(scored, tally);
@@ -132,7 +130,8 @@ std::vector<Tally*> FindTallies(const Job& job, std::vector<Tally>& tallies) {
 std::vector<Tally> MakeTallies(const std::vector<StudiedPipe>& pipes) {
   std::vector<Tally> tallies;
   for (const StudiedPipe& pipe : pipes) {
-    std::vector<std::optional<double>> loudness(pipe.snr_dB.begin(), pipe.snr_dB.end());
+    std::vector<std::optional<double>> loudness;
+    for (const Cell& cell : pipe.cells) loudness.emplace_back(cell.snr_dB);
     loudness.emplace_back();
     for (const auto& snr_dB : loudness) {
       for (const estimator::LocatorKind& kind : estimator::LocatorKinds()) {
@@ -151,17 +150,17 @@ std::vector<Tally> MakeTallies(const std::vector<StudiedPipe>& pipes) {
 
 std::vector<StudiedPipe> StudiedPipes() {
   StudiedPipe plastic = MakePipe("pvc_u", 0.0312, 0.1475, 0.0075);
-  plastic.spacing_m = 60;
+  plastic.spacing_m = 40;
   plastic.match_radius_m = 2;
-  plastic.snr_dB = {0, 3, 6, 10};
+  plastic.cells = {{-6, 0.25}, {-3, 0.25}, {0, 1}, {3, 1}, {6, 1}, {10, 0.25}};
   StudiedPipe cement = MakePipe("asbestos_cement", 0.037, 0.15, 0.013);
-  cement.spacing_m = 120;
+  cement.spacing_m = 100;
   cement.match_radius_m = 2;
-  cement.snr_dB = {0, 3, 6, 10};
+  cement.cells = {{-3, 0.25}, {0, 0.25}, {3, 1}, {6, 1}, {10, 0.25}};
   StudiedPipe iron = MakePipe("ductile_iron", 0.02, 0.158, 0.006);
-  iron.spacing_m = 300;
+  iron.spacing_m = 600;
   iron.match_radius_m = 5;
-  iron.snr_dB = {6, 10};
+  iron.cells = {{3, 0.125}, {6, 0.125}, {10, 1}};
   return {plastic, cement, iron};
 }
 
@@ -200,6 +199,21 @@ std::vector<Tally> StudyDetectors(const StudySize& size) {
       AddRun(jobs[i], outcomes[i], locator, *rows[locator]);
   }
   return tallies;
+}
+
+std::optional<double> InterpolateFound(const std::vector<Tally>& tallies, const std::string& pipe,
+                                       const std::string& locator, double snr_dB) {
+  const Tally *below = nullptr, *above = nullptr;
+  for (const Tally& t : tallies) {
+    if (t.pipe != pipe || t.locator != locator || !t.snr_dB || t.leaks == 0) continue;
+    if (*t.snr_dB <= snr_dB && (!below || *t.snr_dB > *below->snr_dB)) below = &t;
+    if (*t.snr_dB >= snr_dB && (!above || *t.snr_dB < *above->snr_dB)) above = &t;
+  }
+  if (!below || !above) return std::nullopt;
+  const auto share = [](const Tally* t) { return static_cast<double>(t->found) / t->leaks; };
+  const double step_dB = *above->snr_dB - *below->snr_dB;
+  return step_dB > 0 ? share(below) + (snr_dB - *below->snr_dB) / step_dB * (share(above) - share(below))
+                     : share(below);
 }
 
 ShareInterval CalcWilsonInterval(int k, int n) {

@@ -6,7 +6,7 @@
 namespace piperun::scenarios::detectors {
 namespace {
 
-constexpr double kPanel = 260, kHeight = 220, kLeft = 60, kTop = 50, kLow_dB = -1, kHigh_dB = 11;
+constexpr double kPanel = 260, kHeight = 220, kLeft = 60, kTop = 50, kLow_dB = -7, kHigh_dB = 11;
 constexpr const char* kColours[] = {"#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#8c564b"};
 
 template <class Get>
@@ -41,7 +41,7 @@ std::string DrawGrid(const Panel& panel, const std::string& title) {
     svg += Line(panel.left, panel.Y(share), panel.left + kPanel, panel.Y(share), "#ddd");
     svg += Text(panel.left - 6, panel.Y(share) + 4, FormatFixed(share, 1), "text-anchor=\"end\"");
   }
-  for (const double snr_dB : {0.0, 3.0, 6.0, 10.0}) {
+  for (const double snr_dB : {-6.0, -3.0, 0.0, 3.0, 6.0, 10.0}) {
     svg += Line(panel.X(snr_dB), panel.Y(0), panel.X(snr_dB), panel.Y(1), "#ddd");
     svg += Text(panel.X(snr_dB), panel.Y(0) + 16, FormatNumber(snr_dB), "text-anchor=\"middle\"");
   }

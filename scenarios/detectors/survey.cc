@@ -3,19 +3,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <span>
 
 #include "acoustics/gaussian_frames.h"
 #include "acoustics/listener_spectrum.h"
 #include "base/check.h"
+#include "base/number.h"
 #include "scenarios/detectors/slow_drift.h"
+#include "scenarios/yaml_document.h"
 
 namespace piperun::scenarios::detectors {
 namespace {
 
 constexpr double kSpeed_m_s = 0.5, kSwing = 0.1, kSwing_rad_s = 2 * std::numbers::pi / 60;
-constexpr double kDrop_Pa = 3e5;
+constexpr double kRelativeFluctuation = 2e-3;  // of a jet of loudness 0 dB
 constexpr double kDischarge = 0.6;
 constexpr double kBandLow_Hz = 1000, kBandHigh_Hz = 4000, kCrossover_Hz = 1000;
 constexpr double kBeyond_m = 5;  // of the pipe's end: the valve
@@ -36,13 +39,16 @@ const acoustics::LeakSoundKind& TurbulentJet() {
   return *jet;
 }
 
-acoustics::SoundingLeak MakeJet(double s_m, double flow_m3_s, const WaterProperties& water) {
-  const double jet_m_s = std::sqrt(2 * kDrop_Pa / water.density_kg_m3);
-  const double hole_m = std::sqrt(4 * flow_m3_s / (std::numbers::pi * kDischarge * jet_m_s));
+acoustics::SoundingLeak MakeJet(double s_m, const Jet& jet, const WaterProperties& water) {
+  const double jet_m_s = std::sqrt(2 * jet.pressure_Pa / water.density_kg_m3);
+  const double hole_m = std::sqrt(4 * jet.flow_m3_s / (std::numbers::pi * kDischarge * jet_m_s));
   const auto params = TurbulentJet().make_params();
+  const double fluctuation = kRelativeFluctuation * std::pow(10, jet.loudness_dB / 20);
+  const YamlDocument loud("relative_fluctuation: " + FormatNumber(fluctuation), "the detector study");
+  loud.ReadSome([&](ParamVisitor& v) { params->Visit(v); });
   acoustics::SoundingLeak leak;
   leak.s_m = s_m;
-  leak.sound = TurbulentJet().make(*params, hole_m, {flow_m3_s, kDrop_Pa}, water.density_kg_m3);
+  leak.sound = TurbulentJet().make(*params, hole_m, {jet.flow_m3_s, jet.pressure_Pa}, water.density_kg_m3);
   return leak;
 }
 
@@ -63,14 +69,14 @@ acoustics::ListenerState ListenerAt(const Survey& survey, double chainage_m) {
   return {0, chainage_m, kSpeed_m_s, 0.02, 0.5 * survey.bore_m};
 }
 
-/// Leaks and the valve over silence.
+/// Leaks and the valve.
 acoustics::AcousticScene MakeSourceScene(const Survey& survey) {
   acoustics::AcousticScene scene = MakeQuietScene(survey);
-  for (const SurveyLeak& leak : survey.leaks) {
-    scene.leaks.push_back(MakeJet(leak.chainage_m, CalcFlowOfSnr_m3_s(survey, leak.snr_dB), scene.water));
-  }
-  scene.leaks.push_back(MakeJet(survey.length_m + kBeyond_m,
-                                CalcFlowOfSnr_m3_s(survey, survey.disturbances.valve_snr_dB), scene.water));
+  for (const SurveyLeak& leak : survey.leaks)
+    scene.leaks.push_back(
+        MakeJet(leak.chainage_m, MakeJetOfSnr(survey, leak.snr_dB, leak.loudness_dB), scene.water));
+  const Jet valve = MakeJetOfSnr(survey, survey.disturbances.valve_snr_dB, 0);
+  scene.leaks.push_back(MakeJet(survey.length_m + kBeyond_m, valve, scene.water));
   return scene;
 }
 
@@ -144,21 +150,25 @@ class Joints {
   std::size_t next_ = 0;
 };
 
-/// A steady tone.
+/// A steady tone: its phase is that of the sample at the beginning of a block, and turned from there.
 class Tone {
  public:
   Tone(const Disturbances& d, double rate_Hz)
       : amplitude_Pa_(std::sqrt(2.0) * 1e-6 * std::pow(10, d.tone_dB_re_1uPa / 20)),
-        step_rad_(2 * std::numbers::pi * d.tone_Hz / rate_Hz) {}
+        step_rad_(2 * std::numbers::pi * d.tone_Hz / rate_Hz),
+        turn_(std::polar(1.0, step_rad_)) {}
   void AddTo(std::int64_t first_sample, std::span<float> pressure_Pa) const {
-    for (std::size_t i = 0; i < pressure_Pa.size(); ++i) {
-      const double n = static_cast<double>(first_sample + static_cast<std::int64_t>(i));
-      pressure_Pa[i] += static_cast<float>(amplitude_Pa_ * std::cos(step_rad_ * n));
+    auto phasor = std::polar(amplitude_Pa_, step_rad_ * static_cast<double>(first_sample));
+    for (float& pressure : pressure_Pa) {
+      pressure += static_cast<float>(phasor.real());
+      phasor = {phasor.real() * turn_.real() - phasor.imag() * turn_.imag(),
+                phasor.real() * turn_.imag() + phasor.imag() * turn_.real()};
     }
   }
 
  private:
   double amplitude_Pa_, step_rad_;
+  std::complex<double> turn_;
 };
 
 }  // namespace
@@ -167,19 +177,22 @@ double CalcSurveyChainage_m(double t_s) {
   return kSpeed_m_s * (t_s + kSwing * (1 - std::cos(kSwing_rad_s * t_s)) / kSwing_rad_s);
 }
 
-double CalcFlowOfSnr_m3_s(const Survey& survey, double snr_dB) {
+double CalcJetSnr_dB(const Survey& survey, const Jet& jet) {
   acoustics::AcousticScene scene = MakeQuietScene(survey);
   const auto listener = ListenerAt(survey, 0.5 * survey.length_m);
-  const auto params = MakeHydrophone(survey);
-  double flow_m3_s = 1e-3 / 60;
+  scene.leaks = {MakeJet(listener.s_m, jet, scene.water)};
+  return acoustics::CalcLeakSnr_dB(scene, 0, MakeHydrophone(survey), listener, kBandLow_Hz, kBandHigh_Hz);
+}
+
+Jet MakeJetOfSnr(const Survey& survey, double snr_dB, double loudness_dB) {
+  Jet jet;
+  jet.loudness_dB = loudness_dB;
   for (int i = 0; i < 20; ++i) {  // the level grows as the flow, nearly; the corner moves with the hole
-    scene.leaks = {MakeJet(listener.s_m, flow_m3_s, scene.water)};
-    const double off_dB =
-        snr_dB - acoustics::CalcLeakSnr_dB(scene, 0, params, listener, kBandLow_Hz, kBandHigh_Hz);
-    flow_m3_s *= std::pow(10, off_dB / 20);
+    const double off_dB = snr_dB - CalcJetSnr_dB(survey, jet);
+    jet.flow_m3_s *= std::pow(10, off_dB / 20);
     if (std::abs(off_dB) < 1e-6) break;
   }
-  return flow_m3_s;
+  return jet;
 }
 
 estimator::EstimatorStart MakeSurveyStart(const Survey& survey) {
@@ -209,7 +222,7 @@ void RenderSurvey(const Survey& survey, std::uint64_t seed, std::uint64_t run, c
   const Tone tone(survey.disturbances, survey.rate_Hz);
   std::vector<float> psd(frames.bins()), pressure_Pa(frames.hop());
   std::vector<std::int32_t> counts(frames.hop());
-  const double largest = static_cast<double>(params.largest_code());
+  const double largest = static_cast<double>(params.largest_code()), scale_Pa = params.scale_Pa();
   const auto hop = static_cast<std::int64_t>(frames.hop());
   const auto hops = static_cast<std::int64_t>(CalcSurveyTime_s(survey.length_m) * survey.rate_Hz) / hop;
   for (std::int64_t frame = 0; frame <= hops; ++frame) {
@@ -221,10 +234,10 @@ void RenderSurvey(const Survey& survey, std::uint64_t seed, std::uint64_t run, c
     joints.TellUpTo(SampleTime(frame * hop, rate), impacts);
     impacts.Render(pressure_Pa);
     for (std::size_t i = 0; i < counts.size(); ++i) {
-      const double code = static_cast<double>(pressure_Pa[i]) / params.scale_Pa();
+      const double code = static_cast<double>(pressure_Pa[i]) / scale_Pa;
       counts[i] = static_cast<std::int32_t>(std::lrint(std::clamp(code, -largest, largest)));
     }
-    sink({RobotTime(SampleOffset(frame * hop - 1, rate)), survey.rate_Hz, params.scale_Pa(), counts});
+    sink({RobotTime(SampleOffset(frame * hop - 1, rate)), survey.rate_Hz, scale_Pa, counts});
   }
 }
 

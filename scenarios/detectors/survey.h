@@ -14,8 +14,15 @@ namespace piperun::scenarios::detectors {
 /// A leak of a survey, as loud as asked for.
 struct SurveyLeak {
   double chainage_m = 0;
-  double snr_dB = 0;     ///< leak over background without drift, 1 to 4 kHz, at the hole
-  double flow_m3_s = 0;  ///< that a turbulent jet of 3 bar needs for it; filled by MakeSurvey
+  double snr_dB = 0;       ///< leak over background without drift, 1 to 4 kHz, at the hole
+  double loudness_dB = 0;  ///< how much louder it is than most leaks of its flow
+};
+
+/// A turbulent jet through a round hole.
+struct Jet {
+  double flow_m3_s = 1e-3 / 60;
+  double pressure_Pa = 3e5;  ///< inside minus outside
+  double loudness_dB = 0;    ///< of its fluctuation over the default 0.002 of its flow
 };
 
 /// What else is heard.
@@ -47,9 +54,12 @@ struct Survey {
 /// Chainage and its inverse are those of x(t) = v (t + 0.1 (1 - cos(w t)) / w), v = 0.5 m/s, w = 2 pi / 60 s.
 double CalcSurveyChainage_m(double t_s);
 
-/// Flow of a 3 bar turbulent jet, default parameters, whose sound at the hole stands snr_dB over the
-/// survey's background between 1 and 4 kHz.
-double CalcFlowOfSnr_m3_s(const Survey& survey, double snr_dB);
+/// Leak over the survey's background without drift, 1 to 4 kHz, at the hole: ratio of powers on the axis of
+/// the ball, by acoustics::CalcLeakSnr_dB.
+double CalcJetSnr_dB(const Survey& survey, const Jet& jet);
+
+/// The jet of 3 bar and of that loudness whose sound at the hole stands snr_dB over the survey's background.
+Jet MakeJetOfSnr(const Survey& survey, double snr_dB, double loudness_dB);
 
 /// The map a crew would have of that pipe: all that is true but its leaks.
 estimator::EstimatorStart MakeSurveyStart(const Survey& survey);
