@@ -27,6 +27,10 @@ void NoiseScale::Add(std::int64_t bin, double z) {
   first_ = std::max(first_, end_ - n);
 }
 
+void NoiseScale::Forget(std::int64_t first, std::int64_t last) {
+  for (std::int64_t i = std::max(first, first_); i < std::min(last, end_); ++i) ring_[Slot(i)] = kLeftOut;
+}
+
 std::optional<double> NoiseScale::Calc(std::int64_t first, std::int64_t last, double expected) {
   sorted_.clear();
   for (std::int64_t i = std::max(first, first_); i < std::min(last, end_); ++i) {

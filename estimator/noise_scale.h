@@ -16,6 +16,8 @@ class NoiseScale {
   NoiseScale(std::int64_t bins, std::int64_t least);
   /// Bins come in rising order; those left out in between do not count.
   void Add(std::int64_t bin, double z);
+  /// Leaves out the bins from first up to, not including, last: a leak was heard there.
+  void Forget(std::int64_t first, std::int64_t last);
   /// From the bins from first up to, not including, last; nothing when they are too few.
   std::optional<double> Calc(std::int64_t first, std::int64_t last, double expected = 1);
 

@@ -15,6 +15,9 @@ constexpr double kBandShare = 0.5;        // of the ratio's roof that the band a
 constexpr double kRoofError = 0.1;        // of a roof, that the bank's best does not describe
 constexpr double kMinZ = 3;               // below this a peak is not worth remembering
 constexpr double kMaxReach_m = 200;
+constexpr double kLeastScale =
+    0.75;  // of noise for the place: drift may be milder than modelled, scatter not
+constexpr std::int64_t kHeardReaches = 2;   // around a leak, where it moves the statistic
 constexpr std::int64_t kNoiseReaches = 10;  // before a place, from which the noise is told
 constexpr double kHeights_dB[] = {3, 20};
 
@@ -148,6 +151,7 @@ void RoofScan::ReportSettled(std::int64_t up_to_bin) {
     std::erase_if(settled_, [&](const Peak& p) { return peak.bin - p.bin > 2 * reach_bins_; });
     settled_.push_back(as_heard);
     if (!IsLeak(peak)) continue;
+    noise_.Forget(peak.bin - kHeardReaches * reach_bins_, peak.bin + kHeardReaches * reach_bins_);
     ReportPeak(peak, CalcFreeReach_m(peak));
     last_reported_ = peak.bin;
   }
@@ -166,7 +170,7 @@ double RoofScan::CalcFreeReach_m(const Peak& peak) const {
 }
 
 std::optional<PlacePosterior> RoofScan::Localise(const Peak& peak) {
-  const double scale = CalcNoiseScale(peak);
+  const double scale = std::max(kLeastScale, CalcNoiseScale(peak));
   const std::int64_t half = std::max<std::int64_t>(1, apart_bins_ / 2);
   log_likelihood_.clear();
   const std::int64_t first = std::max(peak.bin - half, profile_.first() + apart_bins_);

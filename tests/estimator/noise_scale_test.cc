@@ -48,6 +48,13 @@ TEST(NoiseScale, OldValuesAndThoseOutsideAreForgotten) {
   EXPECT_FALSE(scale.Calc(0, 2050));
 }
 
+TEST(NoiseScale, WhatIsForgottenDoesNotCount) {
+  NoiseScale scale = Fill(1, 0);
+  scale.Forget(100, kBins - 50);
+  EXPECT_TRUE(scale.Calc(0, kBins));
+  EXPECT_FALSE(scale.Calc(60, kBins));
+}
+
 TEST(NoiseScale, GapsDoNotCount) {
   NoiseScale scale(1000, 100);
   const RandomStream random(1, "z", 0);
