@@ -145,10 +145,23 @@ void RickerMap::Follow(const Point& point) {
   if (!best_ || point.z > best_->z) best_ = point;
 }
 
+/// A dip has shoulders half as high as it is deep.
+bool RickerMap::IsShoulder(const Point& peak) const {
+  const Scale& scale = scales_[peak.scale];
+  const double height_dB = scale.response_dB[Slot(peak.bin)];
+  const std::int64_t near = ToBins(kApart * scale.a_m, bin_m_);
+  for (std::int64_t i = std::max(transformed_from_, peak.bin - near);
+       i <= std::min(*next_transform_ - 1, peak.bin + near); ++i) {
+    if (scale.response_dB[Slot(i)] < -height_dB) return true;
+  }
+  return false;
+}
+
 void RickerMap::ReportBest() {
   if (!best_) return;
   const Point peak = *best_;
   best_.reset();
+  if (IsShoulder(peak)) return;
   Scale& scale = scales_[peak.scale];
   const std::int64_t half = ToBins(scale.a_m, bin_m_);
   const std::int64_t first = std::max(transformed_from_, peak.bin - half);

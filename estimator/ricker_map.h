@@ -31,8 +31,8 @@ struct RickerPeak {
 ///
 ///     f(z) = sum over a of 1000 / (2 a) (1 - Phi(z))      false alarms per km
 ///
-/// are accepted, and that are the highest within four of their scales, are reported in the end.
-/// Posterior of the place: z^2 / 2 as its log likelihood.
+/// are accepted, that are the highest within four of their scales, and that have no deeper dip beside them
+/// are reported. Posterior of the place: z^2 / 2 as its log likelihood.
 class RickerMap {
  public:
   struct Params {
@@ -69,6 +69,7 @@ class RickerMap {
   double CalcZ(Scale& scale, std::int64_t bin);
   Point Test(std::int64_t bin);
   void Follow(const Point& point);
+  bool IsShoulder(const Point& peak) const;
   void ReportBest();
   std::size_t Slot(std::int64_t bin) const;
 

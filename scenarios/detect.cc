@@ -281,12 +281,15 @@ std::string WriteDetectionsJson(const Detections& detections) {
   using Json = nlohmann::ordered_json;
   Json leaks = Json::array();
   for (const estimator::LeakEstimate& leak : detections.leaks) {
-    leaks.push_back({{"time_s", Seconds(leak.t_cpa)},
-                     {"chainage_m", detections.placed ? Json(leak.chainage_m) : Json()},
-                     {"sigma_m", detections.placed ? Json(leak.sigma_m) : Json()},
-                     {"confidence", leak.confidence},
-                     {"flow_m3_s", leak.flow_m3_s ? Json(*leak.flow_m3_s) : Json()},
-                     {"flow_sigma_dB", leak.flow_m3_s ? Json(leak.flow_sigma_dB) : Json()}});
+    leaks.push_back(
+        {{"time_s", Seconds(leak.t_cpa)},
+         {"chainage_m", detections.placed ? Json(leak.chainage_m) : Json()},
+         {"sigma_m", detections.placed ? Json(leak.sigma_m) : Json()},
+         {"interval_m",
+          detections.placed ? Json(Json::array({leak.interval.low_m, leak.interval.high_m})) : Json()},
+         {"confidence", leak.confidence},
+         {"flow_m3_s", leak.flow_m3_s ? Json(*leak.flow_m3_s) : Json()},
+         {"flow_sigma_dB", leak.flow_m3_s ? Json(leak.flow_sigma_dB) : Json()}});
   }
   const Json json{{"schema", "piperun.detect/1"},
                   {"audio", detections.audio},

@@ -59,8 +59,8 @@ struct Detections {
 Detections Detect(const DetectOptions& options);
 
 /// {"schema": "piperun.detect/1", "audio", "locator", "duration_s", "detections": [{"time_s", "chainage_m",
-/// "sigma_m", "confidence", "flow_m3_s", "flow_sigma_dB"}]}; chainage and sigma are null where nothing was
-/// said of the way.
+/// "sigma_m", "interval_m" (95 %), "confidence", "flow_m3_s", "flow_sigma_dB"}]}; chainage, sigma and
+/// interval are null where nothing was said of the way.
 std::string WriteDetectionsJson(const Detections& detections);
 std::string WriteDetectionsCsv(const Detections& detections);
 /// Levels of the band and of its ratio against chainage (time without a way), detections marked.
