@@ -75,8 +75,8 @@ class Way {
   }
   double Chainage_m(double time_s) const {
     if (rows_.empty()) return start_m_ + speed_m_s_ * time_s;
-    const auto later = std::find_if(rows_.begin() + 1, rows_.end() - 1,
-                                    [&](const TrackRow& row) { return row.time_s >= time_s; });
+    const auto later = std::partition_point(rows_.begin() + 1, rows_.end() - 1,
+                                            [&](const TrackRow& row) { return row.time_s < time_s; });
     const TrackRow &a = *(later - 1), &b = *later;
     return a.chainage_m + (time_s - a.time_s) / (b.time_s - a.time_s) * (b.chainage_m - a.chainage_m);
   }
@@ -107,15 +107,24 @@ estimator::EstimatorStart MakeStart(const DetectPipe& pipe, double length_m) {
   return start;
 }
 
-const estimator::LocatorKind& FindLocator(const std::string& name) {
+void RequireLocator(const std::string& name) {
   std::vector<std::string> known;
+  std::string all;
   for (const estimator::LocatorKind& kind : estimator::LocatorKinds()) {
-    if (kind.name == name) return kind;
+    if (kind.name == name) return;
     known.emplace_back(kind.name);
+    all += (all.empty() ? "" : ", ") + known.back();
   }
-  std::string problem = "there is no locator '" + name + "'";
+  std::string problem = "there is no locator '" + name + "'; known: " + all;
   if (const auto near = FindNearestName(name, known)) problem += "; did you mean '" + *near + "'?";
   throw InputError(problem, "--locator");
+}
+
+/// The locator asked for with default parameters, or else the pipe file's, or else the matched filter.
+estimator::LocatorChoice ChooseLocator(const DetectOptions& options) {
+  if (options.locator.empty()) return options.pipe ? options.pipe->locator : estimator::LocatorChoice();
+  RequireLocator(options.locator);
+  return estimator::LocatorChoice(options.locator);
 }
 
 /// Samples as counts of a 24-bit converter; counts what is wrong with them.
@@ -227,6 +236,7 @@ void DetectPipe::Visit(ParamVisitor& v) {
            start_chainage_m);
   v.Number({"full_scale_Pa", "Pressure of the largest sample the file can hold."}, Range::Positive(),
            full_scale_Pa);
+  v.Struct({"locator", "How leaks are told, where the command line does not say."}, locator);
 }
 
 DetectPipe LoadDetectPipe(const std::filesystem::path& path) {
@@ -237,10 +247,11 @@ DetectPipe LoadDetectPipe(const std::filesystem::path& path) {
 
 Detections Detect(const DetectOptions& options) {
   acoustics::SoundFile file(options.audio);
-  const estimator::LocatorKind& kind = FindLocator(options.locator);
+  const estimator::LocatorChoice choice = ChooseLocator(options);
+  if (choice.none()) throw InputError("'none' finds nothing; name a locator", "locator.kind");
   Detections result;
   result.audio = options.audio.filename().string();
-  result.locator = options.locator;
+  result.locator = choice.kind();
   result.rate_Hz = file.rate_Hz();
   result.duration_s = static_cast<double>(file.frames()) / file.rate_Hz();
   result.placed = options.pipe || !options.track.empty();
@@ -251,7 +262,7 @@ Detections Detect(const DetectOptions& options) {
     const double recorded_m = std::max(1.0, way.Chainage_m(result.duration_s));
     start = MakeStart(*options.pipe, options.pipe->length_m.value_or(recorded_m));
   }
-  const auto locator = kind.make(*kind.make_params(), start);
+  const auto locator = choice.Make(start);
   const double scale_Pa = (options.pipe ? options.pipe->full_scale_Pa : 1) / kCounts;
   Intake intake(options.audio.string());
   LevelLog levels(way, result.duration_s);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "estimator/estimator.h"
+#include "estimator/locator_choice.h"
 #include "scenarios/scenario.h"
 
 namespace piperun::scenarios {
@@ -20,6 +21,7 @@ struct DetectPipe {
   double speed_m_s = 0.5;          ///< of the ball, when there is no track
   double start_chainage_m = 0;
   double full_scale_Pa = 1000;  ///< pressure of the file's largest sample
+  estimator::LocatorChoice locator;
   void Visit(ParamVisitor& v);
 };
 
@@ -30,7 +32,7 @@ struct DetectOptions {
   std::filesystem::path audio;
   std::optional<DetectPipe> pipe;
   std::filesystem::path track;  ///< CSV with the header time_s,chainage_m; empty: the pipe's constant speed
-  std::string locator = "matched_filter";
+  std::string locator{};  ///< a kind with default parameters; empty: the pipe file's, or the matched filter
 };
 
 /// Level along the record, for plotting: mean over a stretch of equal time.

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "base/number.h"
+#include "estimator/leak_locator.h"
 #include "scenarios/detect.h"
 #include "scenarios/output_file.h"
 #include "tools/piperun/command.h"
@@ -14,7 +15,7 @@ namespace piperun::tools {
 namespace {
 
 struct DetectArguments {
-  std::string audio, pipe, track, locator = "matched_filter", out;
+  std::string audio, pipe, track, locator, out;
 };
 
 /// Flow in L/min, `sigmas` of its standard deviations away.
@@ -25,11 +26,13 @@ std::string FlowText(const estimator::LeakEstimate& leak, double sigmas) {
 
 std::string DescribeDetections(const scenarios::Detections& detections) {
   if (detections.leaks.empty()) return "no leak found\n";
-  Table table({"time s", "chainage m", "sigma m", "confidence", "flow L/min", "95 % from", "to"});
+  Table table({"time_s", "chainage_m", "95%_from", "to", "confidence", "flow_L/min", "95%_from", "to"});
   for (const estimator::LeakEstimate& leak : detections.leaks) {
     table.Add({FormatFixed(Seconds(leak.t_cpa), 2), detections.placed ? FormatFixed(leak.chainage_m, 2) : "-",
-               detections.placed ? FormatFixed(leak.sigma_m, 3) : "-", FormatFixed(leak.confidence, 3),
-               FlowText(leak, 0), FlowText(leak, -1.96), FlowText(leak, 1.96)});
+               detections.placed ? FormatFixed(leak.interval.low_m, 2) : "-",
+               detections.placed ? FormatFixed(leak.interval.high_m, 2) : "-",
+               FormatFixed(leak.confidence, 3), FlowText(leak, 0), FlowText(leak, -1.96),
+               FlowText(leak, 1.96)});
   }
   return table.Text();
 }
@@ -42,6 +45,13 @@ void Describe(const scenarios::Detections& detections) {
   if (detections.full_scale_samples > 0)
     fmt::print("{} samples at full scale\n", detections.full_scale_samples);
   fmt::print("{}", DescribeDetections(detections));
+}
+
+std::string ListLocators() {
+  std::string names;
+  for (const estimator::LocatorKind& kind : estimator::LocatorKinds())
+    names += (names.empty() ? "" : ", ") + std::string(kind.name);
+  return names;
 }
 
 int Detect(const DetectArguments& arguments, const Display& display) {
@@ -72,12 +82,17 @@ int Detect(const DetectArguments& arguments, const Display& display) {
 void AddDetectCommand(CLI::App& app, Display& display, int& exit_code) {
   auto arguments = std::make_shared<DetectArguments>();
   CLI::App* command = app.add_subcommand("detect", "Find leaks in a recording of a passing hydrophone");
-  command->add_option("AUDIO", arguments->audio, "Sound file, one channel")->required();
+  command
+      ->add_option("AUDIO", arguments->audio,
+                   "Sound file of one channel: WAV, FLAC, whatever libsndfile reads")
+      ->required();
   command->add_option("--pipe", arguments->pipe,
-                      "YAML: material, diameter_m, wall_thickness_m, speed_m_s, full_scale_Pa ..");
-  command->add_option("--track", arguments->track, "CSV with header time_s,chainage_m");
-  command->add_option("--locator", arguments->locator, "Kind of locator");
-  command->add_option("-o,--out", arguments->out, "Folder for table, JSON and plot");
+                      "YAML file: material, diameter_m, wall_thickness_m; speed_m_s (0.5), start_chainage_m, "
+                      "length_m, full_scale_Pa (1000), locator {kind, ..}");
+  command->add_option("--track", arguments->track,
+                      "Where the ball was: CSV with header time_s,chainage_m (otherwise constant speed)");
+  command->add_option("--locator", arguments->locator, "Locator, default parameters: " + ListLocators());
+  command->add_option("-o,--out", arguments->out, "Folder for detections.csv, .json and .svg");
   command->callback([arguments, &display, &exit_code] { exit_code = Detect(*arguments, display); });
 }
 
