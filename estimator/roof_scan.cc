@@ -180,8 +180,11 @@ std::optional<PlacePosterior> RoofScan::Localise(const Peak& peak) {
     log_likelihood_.push_back(bank_.CalcLogLikelihood(scale));
   }
   if (log_likelihood_.size() < 3) return std::nullopt;
+  // rounding into a bin, of the roof's top and of the frames around it: sd of a triangle a bin wide
+  const double rounding_m = profile_.bin_m() / std::sqrt(24.0);
   const double track_sd_m = profile_.Interpolate(profile_.Centre_m(peak.bin)).chainage_sd_m;
-  return CalcPlacePosterior(profile_.Centre_m(first), profile_.bin_m(), log_likelihood_, track_sd_m);
+  return CalcPlacePosterior(profile_.Centre_m(first), profile_.bin_m(), log_likelihood_,
+                            std::hypot(track_sd_m, rounding_m));
 }
 
 /// Least squares for the place by Newton's method; the sum of squares grows by curvature / 2 dx^2 away from
