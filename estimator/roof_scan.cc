@@ -133,7 +133,8 @@ double RoofScan::CalcOwnZ(const Peak& peak) {
     const std::int64_t outside = std::max<std::int64_t>(0, std::abs(offset) - reach_bins_);
     const Roof& roof = bank_.roofs()[other.roof];
     const double seen = roof.Level_dB(static_cast<double>(outside) * profile_.bin_m()) / roof.Level_dB(0);
-    variance += std::pow(kRoofError * seen * other.z, 2);
+    const double unknown = kRoofError * seen * other.z;
+    variance += unknown * unknown;
   };
   std::for_each(settled_.begin(), settled_.end(), take_off);
   std::for_each(peaks_.begin(), peaks_.end(), take_off);
