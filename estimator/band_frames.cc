@@ -67,12 +67,12 @@ BandFrame BandFrames::Cut(RobotTime block_stamp, std::int64_t samples_before_sta
   spectrum_->Transform(samples_Pa_);
   const BandFrame frame{
       block_stamp - to_last - half_frame,
-      power_ / n,
+      spectrum_->CalcPower_Pa2(params_.band_low_Hz, params_.band_high_Hz),
       rectified_ / n,
       spectrum_->CalcMeanSquare_Pa2(params_.band_low_Hz, params_.band_high_Hz),
       spectrum_->CalcMeanSquare_Pa2(params_.reference_low_Hz, params_.reference_high_Hz),
   };
-  power_ = rectified_ = 0;
+  rectified_ = 0;
   count_ = 0;
   return frame;
 }

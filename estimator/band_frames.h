@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -29,7 +30,7 @@ struct BandParams {
 struct BandFrame {
   RobotTime time{};                ///< its middle
   double power_Pa2 = 0;            ///< mean square in the band
-  double rectified_Pa = 0;         ///< mean absolute value in the band
+  double rectified_Pa = 0;         ///< mean absolute value behind a Butterworth filter; 0 unless asked for
   double noise_Pa2 = 0;            ///< mean square in the band without its tones
   double reference_noise_Pa2 = 0;  ///< the same of the reference band
 
@@ -45,7 +46,10 @@ struct BandFrame {
 class BandFrames {
  public:
   using Frame = BandFrame;
-  explicit BandFrames(const BandParams& params) : params_(params) { params_.Check(); }
+  /// `rectify`: rectified_Pa is wanted, which takes a Butterworth filter.
+  explicit BandFrames(const BandParams& params, bool rectify = false) : params_(params), rectify_(rectify) {
+    params_.Check();
+  }
 
   /// Calls sink(frame) for each frame that ends in this block.
   template <class Sink>
@@ -61,20 +65,19 @@ class BandFrames {
  private:
   void Prepare(const AudioBlock& block);
   void Accumulate(double pressure_Pa) {
-    const double in_band = band_.Step(pressure_Pa);
-    power_ += in_band * in_band;
-    rectified_ += in_band < 0 ? -in_band : in_band;
+    if (rectify_) rectified_ += std::abs(band_.Step(pressure_Pa));
     samples_Pa_[static_cast<std::size_t>(count_++)] = static_cast<float>(pressure_Pa);
   }
   BandFrame Cut(RobotTime block_stamp, std::int64_t samples_before_stamp);
 
   BandParams params_;
+  bool rectify_;
   double rate_Hz_ = 0;
   std::int64_t frame_samples_ = 0;
   BiquadCascade band_;
   std::optional<LineFreeLevels> spectrum_;
   std::vector<float> samples_Pa_;
-  double power_ = 0, rectified_ = 0;
+  double rectified_ = 0;
   std::int64_t count_ = 0;
 };
 

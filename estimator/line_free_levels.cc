@@ -36,8 +36,9 @@ struct LineFreeLevels::Plan {
       window[i] = static_cast<float>(0.5 - 0.5 * std::cos(2 * std::numbers::pi * turn));
       energy += static_cast<double>(window[i] * window[i]);
     }
-    for (std::size_t k = 0; k < flat.size(); ++k)
-      flat[k] = 2 * std::pow(static_cast<double>(k) * bin_Hz, kFall) / (rate_Hz * energy);
+    scale = 2 / (rate_Hz * energy);
+    for (std::size_t k = 0; k < flat.size(); ++k) flat[k] = std::pow(static_cast<double>(k) * bin_Hz, kFall);
+    density.resize(flat.size());
     power.resize(flat.size());
   }
   ~Plan() { kiss_fftr_free(config); }
@@ -53,9 +54,11 @@ struct LineFreeLevels::Plan {
   double bin_Hz;
   std::vector<float> window, weighted;
   std::vector<kiss_fft_cpx> spectrum;
-  std::vector<double> flat;    // makes |X_k|^2 a density times f^2.5
-  std::vector<double> power;   // that density
-  std::vector<double> sorted;  // scratch
+  double scale = 0;             // makes |X_k|^2 a density
+  std::vector<double> density;  // P_k
+  std::vector<double> flat;     // f_k^2.5
+  std::vector<double> power;    // their product
+  std::vector<double> sorted;   // scratch
 };
 
 LineFreeLevels::LineFreeLevels(std::size_t samples, double rate_Hz)
@@ -75,7 +78,8 @@ void LineFreeLevels::Transform(std::span<const float> frame_Pa) {
   kiss_fftr(p.config, p.weighted.data(), p.spectrum.data());
   for (std::size_t k = 0; k < p.power.size(); ++k) {
     const auto re = static_cast<double>(p.spectrum[k].r), im = static_cast<double>(p.spectrum[k].i);
-    p.power[k] = p.flat[k] * (re * re + im * im);
+    p.density[k] = p.scale * (re * re + im * im);
+    p.power[k] = p.flat[k] * p.density[k];
   }
 }
 
@@ -88,6 +92,12 @@ double LineFreeLevels::CalcMeanSquare_Pa2(double low_Hz, double high_Hz) {
   std::nth_element(p.sorted.begin(), middle, p.sorted.end());
   const double integral = (std::pow(low_Hz, 1 - kFall) - std::pow(high_Hz, 1 - kFall)) / (kFall - 1);
   return *middle / std::numbers::ln2 * integral;
+}
+
+double LineFreeLevels::CalcPower_Pa2(double low_Hz, double high_Hz) const {
+  double sum = 0;
+  for (std::size_t k = plan_->First(low_Hz); k <= plan_->Last(high_Hz); ++k) sum += plan_->density[k];
+  return sum * plan_->bin_Hz;
 }
 
 double CalcLineFreeScatter_dB(double low_Hz, double high_Hz, double frame_s) {

@@ -32,6 +32,8 @@ class LineFreeLevels {
   void Transform(std::span<const float> frame_Pa);
   /// Of the frame looked at last. Range: a band that is resolved.
   double CalcMeanSquare_Pa2(double low_Hz, double high_Hz);
+  /// The same with all lines: the sum of P_k over the band times the bins' width.
+  double CalcPower_Pa2(double low_Hz, double high_Hz) const;
 
  private:
   struct Plan;

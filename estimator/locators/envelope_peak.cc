@@ -109,7 +109,7 @@ class EnvelopePeak final : public FrameLocator {
 };
 
 EnvelopePeak::EnvelopePeak(const EnvelopePeakParams& params)
-    : FrameLocator(BandFrames(params.bands)),
+    : FrameLocator(BandFrames(params.bands, true)),
       params_(params),
       kernel_(HannKernel(
           std::max<std::size_t>(1, static_cast<std::size_t>(params.smooth_s / params.bands.frame_s)))),

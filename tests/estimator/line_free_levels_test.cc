@@ -84,6 +84,17 @@ TEST(LineFreeLevels, ScatterIsAsStated) {
   EXPECT_NEAR(std::sqrt(squares), CalcLineFreeScatter_dB(1000, 4000, 0.05), 0.15);
 }
 
+TEST(LineFreeLevels, AToneIsPartOfThePower) {
+  // a sine of amplitude 2 has the mean square 2; Hann's main lobe lies within the band
+  LineFreeLevels levels(kFrame, kRate_Hz);
+  std::vector<float> frame(kFrame);
+  for (std::size_t i = 0; i < kFrame; ++i)
+    frame[i] =
+        static_cast<float>(2 * std::sin(2 * std::numbers::pi * 2000 * static_cast<double>(i) / kRate_Hz));
+  levels.Transform(frame);
+  EXPECT_NEAR(levels.CalcPower_Pa2(1000, 4000), 2, 1e-3);
+}
+
 TEST(LineFreeLevels, ABandBetweenTwoBinsIsNotResolved) {
   const LineFreeLevels levels(32, kRate_Hz);  // bins of 500 Hz
   EXPECT_FALSE(levels.Resolves(510, 990));
