@@ -112,6 +112,9 @@ void NetworkSource::Visit(ParamVisitor& v) {
   v.Text({"material_rules",
           "EPANET file: rules that give every pipe its material and wall (empty: piperun's own)."},
          material_rules);
+  v.Struct(
+      {"origin", "Where on earth the coordinates begin; then leaks are also written as dig points, GeoJSON."},
+      origin);
   NetworkParams::Visit(v);
 }
 

@@ -9,6 +9,7 @@
 
 #include "acoustics/ambient.h"
 #include "base/params.h"
+#include "scenarios/geo_origin.h"
 #include "scenarios/kind_entry.h"
 #include "scenarios/yaml_document.h"
 #include "sim/ball.h"
@@ -68,6 +69,7 @@ struct NetworkSource : NetworkParams {
   std::optional<double> map_unit_m;  ///< nothing: fitted to the stated lengths
   double bend_radius_diameters = 1.5;
   std::string material_rules;
+  GeoOrigin origin;
   std::string inp_text;             ///< of the file `inp`, read with the scenario
   std::string material_rules_text;  ///< of the file `material_rules`; empty: piperun's own rules
   void Visit(ParamVisitor& v);
