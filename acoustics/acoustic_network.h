@@ -6,12 +6,20 @@
 
 namespace piperun::acoustics {
 
+/// A stretch of a pipe where sound of all frequencies loses more than by the pipe's wave.
+struct LocalLoss {
+  double s_begin_m = 0;
+  double s_end_m = 0;
+  double loss_Np_m = 0;
+};
+
 /// One pipe of a network as sound sees it: what it joins and the wave it carries.
 struct AcousticPipe {
   int from_node = 0;  ///< nodes are numbered from 0
   int to_node = 0;
   double length_m = 0;
   PipeWave wave;
+  std::vector<LocalLoss> local_losses{};
 };
 
 /// A place in a network, s along the pipe from its `from` node. Beyond its ends (a ball's centre past a dead

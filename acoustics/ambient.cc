@@ -31,6 +31,21 @@ void ImpactParams::Visit(ParamVisitor& v) {
            ring_decay_s);
 }
 
+void RollingParams::Check() const {
+  if (low_Hz < high_Hz) return;
+  throw InputError(
+      FormatNumber(high_Hz) + " is not allowed; it must be above low_Hz, " + FormatNumber(low_Hz), "high_Hz");
+}
+
+void RollingParams::Visit(ParamVisitor& v) {
+  v.Flag({.name = "on", .doc = "a rigid ball that rolls or slides along the wall is heard"}, on);
+  v.Number({.name = "level_dB_re_1uPa2_Hz",
+            .doc = "spectral level in the band at 1 m/s; it goes with 30 log10 of the speed"},
+           Range::Between(-200, 200), level_dB_re_1uPa2_Hz);
+  v.Number({.name = "low_Hz", .doc = "lower half-power end of the band"}, Range::Between(1, 1e6), low_Hz);
+  v.Number({.name = "high_Hz", .doc = "upper half-power end of the band"}, Range::Between(1, 1e6), high_Hz);
+}
+
 void AmbientParams::Visit(ParamVisitor& v) {
   v.Number({.name = "distant_level_dB_re_1uPa2_Hz",
             .doc = "spectral level at 100 Hz of the noise that reaches the ball along the pipe from afar"},
@@ -39,6 +54,7 @@ void AmbientParams::Visit(ParamVisitor& v) {
            Range::Between(-100, 100), distant_slope_dB_per_decade);
   v.Flag({.name = "flow_noise", .doc = "turbulent wall pressure at the ball's slip speed"}, flow_noise);
   v.Struct({.name = "impacts", .doc = "how a blow on the ball sounds"}, impacts);
+  v.Struct({.name = "rolling", .doc = "how a ball sounds that rolls or slides along the wall"}, rolling);
 }
 
 double CalcDistantNoisePsd(const AmbientParams& ambient, double f_Hz) {

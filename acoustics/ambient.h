@@ -21,6 +21,19 @@ struct ImpactParams {
   void Visit(ParamVisitor& v);
 };
 
+/// Band noise of a hard ball that rolls or slides along the wall (acoustics/rolling.h). Engineering values:
+/// no record of a bare ball is published; vendors coat the ball with foam because of it.
+struct RollingParams {
+  bool on = false;
+  double level_dB_re_1uPa2_Hz = 75;  ///< in the band, at 1 m/s
+  double low_Hz = 200;               ///< the band's half-power ends
+  double high_Hz = 2000;
+
+  /// Throws InputError unless low_Hz < high_Hz.
+  void Check() const;
+  void Visit(ParamVisitor& v);
+};
+
 /// What the hydrophone hears besides leaks. Engineering defaults, uncertain by 15 dB: no calibrated record
 /// from inside a main is published. The slope is anchored by -25.6 dB/decade (100-1000 Hz) in leak-free
 /// records of a 152 mm PVC rig.
@@ -29,6 +42,7 @@ struct AmbientParams {
   double distant_slope_dB_per_decade = -25;
   bool flow_noise = true;  ///< turbulent wall pressure at the ball's slip speed (Goody 2004)
   ImpactParams impacts{};
+  RollingParams rolling{};
 
   void Visit(ParamVisitor& v);
 };

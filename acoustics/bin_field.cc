@@ -41,8 +41,7 @@ void BinField::Open(const NetworkField& field, const AcousticNetwork& network,
     const PipeWave& wave = network.pipes[static_cast<std::size_t>(stretch.pipe)].wave;
     Listening& listening = listening_.emplace_back(Listening{i, stretch, {}, {}});
     for (std::size_t k = 0; k < bins_; ++k) {
-      listening.power_loss_1_m.push_back(
-          static_cast<float>(2 * wave.Attenuation_Np_m(static_cast<double>(k) * bin_width_Hz_)));
+      listening.power_loss_1_m.push_back(static_cast<float>(2 * CalcLoss_Np_m(wave, stretch, k)));
     }
     for (std::size_t source = 0; source < field.sources(); ++source)
       listening.fields.emplace_back(stretch.length_m, 2 * bin_width_Hz_ / wave.speed_m_s, bins_);
@@ -60,12 +59,16 @@ void BinField::Keep(const NetworkField& field, const AcousticNetwork& network, s
           const auto waves = field.FindWaves((k - first_bin) * kParts + j, source, listening.index);
           forward[j] = waves.forward, backward[j] = waves.backward;
         }
-        listening.fields[source].Set(k, forward, backward,
-                                     wave.Attenuation_Np_m(static_cast<double>(k) * bin_width_Hz_),
+        listening.fields[source].Set(k, forward, backward, CalcLoss_Np_m(wave, listening.stretch, k),
                                      spectra[source][k]);
       }
     }
   }
+}
+
+double BinField::CalcLoss_Np_m(const PipeWave& wave, const NetworkField::Stretch& stretch,
+                               std::size_t bin) const {
+  return wave.Attenuation_Np_m(static_cast<double>(bin) * bin_width_Hz_) + stretch.local_loss_Np_m;
 }
 
 BinField::Listening& BinField::Find(const PipePlace& place) {

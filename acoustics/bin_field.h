@@ -35,6 +35,7 @@ class BinField {
             const std::vector<int>& listening_pipes);
   void Keep(const NetworkField& field, const AcousticNetwork& network, std::size_t first_bin,
             std::size_t end_bin, const std::vector<std::vector<float>>& spectra);
+  double CalcLoss_Np_m(const PipeWave& wave, const NetworkField::Stretch& stretch, std::size_t bin) const;
   Listening& Find(const PipePlace& place);
 
   double bin_width_Hz_;

@@ -6,6 +6,7 @@
 
 #include "acoustics/gaussian_frames.h"
 #include "acoustics/listener_spectrum.h"
+#include "acoustics/tones.h"
 
 namespace piperun::acoustics {
 namespace {
@@ -45,12 +46,15 @@ class Hydrophone::Impl {
         spectrum_(scene, params, frames_.bin_width_Hz(), frames_.bins()),
         impacts_(scene.ambient.impacts, scene.ball, scene.water.density_kg_m3, rate_, params.high_pass_Hz,
                  random),
+        tones_(scene, rate_, params.high_pass_Hz, frames_.hop()),
+        faults_(params.faults, rate_, random),
         psd_(frames_.bins()),
         mixed_(frames_.hop()) {}
 
   Rate rate() const { return rate_; }
   std::int64_t hop_samples() const { return static_cast<std::int64_t>(frames_.hop()); }
   std::int64_t clipped_samples() const { return clipped_samples_; }
+  std::int64_t dropped_samples() const { return faults_.dropped_samples(); }
 
   void Add(const Knock& knock) { impacts_.Add(knock); }
 
@@ -59,7 +63,8 @@ class Hydrophone::Impl {
     while (!counts.empty()) {
       if (ready_.empty()) ready_ = AdvanceFrame(listener);
       const std::size_t n = std::min(counts.size(), ready_.size());
-      Quantise(MixKnocks(ready_.first(n)), counts.first(n));
+      Quantise(Mix(ready_.first(n)), counts.first(n));
+      faults_.Drop(counts.first(n));
       counts = counts.subspan(n);
       ready_ = ready_.subspan(n);
     }
@@ -70,16 +75,20 @@ class Hydrophone::Impl {
     const ListenerState state = listener(SampleTime(next_frame_ * hop_samples(), rate_));
     if (IsFinite(state)) {
       spectrum_.Calc(state, psd_);
+      tones_.Advance(state);
     } else {
+      tones_.Advance({});
       std::fill(psd_.begin(), psd_.end(), 0.F);
     }
     return frames_.Advance(next_frame_++, psd_);
   }
 
-  std::span<const float> MixKnocks(std::span<const float> pressure_Pa) {
+  std::span<const float> Mix(std::span<const float> pressure_Pa) {
     std::copy(pressure_Pa.begin(), pressure_Pa.end(), mixed_.begin());
     const std::span<float> mixed = std::span(mixed_).first(pressure_Pa.size());
     impacts_.Render(mixed);
+    tones_.Render(mixed);
+    faults_.Amplify(mixed);
     return mixed;
   }
 
@@ -97,6 +106,8 @@ class Hydrophone::Impl {
   GaussianFrames frames_;
   ListenerSpectrum spectrum_;
   ImpactSound impacts_;
+  Tones tones_;
+  RecordFaults faults_;
   std::vector<float> psd_;
   std::vector<float> mixed_;
   std::int64_t next_frame_ = 0;
@@ -115,6 +126,8 @@ Duration Hydrophone::lookahead() const {
   // sample times are rounded to the nanosecond one by one: a difference may be one longer
   return SampleOffset(impl_->hop_samples(), impl_->rate()) + Duration{1};
 }
+
+std::int64_t Hydrophone::dropped_samples() const { return impl_->dropped_samples(); }
 
 void Hydrophone::Add(const Knock& knock) { impl_->Add(knock); }
 

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "acoustics/impact.h"
+#include "acoustics/record_faults.h"
 #include "acoustics/scene.h"
 #include "base/params.h"
 #include "base/random.h"
@@ -22,6 +23,7 @@ struct HydrophoneParams : ParamsOf<HydrophoneParams> {
   double self_noise_dB_re_1uPa2_Hz = 42;  ///< at 1 kHz, flat above 100 Hz, 1/f below
   double high_pass_Hz = 10;               ///< -3 dB corner of the first-order input stage
   double face_radius_m = 0.005;           ///< of the sensitive face
+  RecordFaultParams faults{};
 
   /// 2^(bits-1) - 1. Codes run from minus to plus this, in the low bits of an int32.
   std::int64_t largest_code() const;
@@ -52,8 +54,9 @@ double CalcConverterNoisePsd(const HydrophoneParams& params);
 /// from frame to frame, 0.3 dB on a slope of 10 dB/m. Bins lie 16 Hz apart; DC and the Nyquist bin are
 /// silent. Correlations longer than a frame (echoes, tones) cannot be made this way.
 ///
-/// Knocks on the ball are added before the converter (acoustics/impact.h). A record without any is the same
-/// as if they did not exist.
+/// Knocks on the ball (acoustics/impact.h) and tones (acoustics/tones.h) are added before the converter. A
+/// record without any is the same as if they did not exist. Gain steps and drop-outs come last
+/// (acoustics/record_faults.h).
 ///
 /// Random numbers are keyed by (stream, frame, bin): the samples do not depend on the size of the blocks. Of
 /// the stream, samples are frames and slots 0 to N/8 bins; slots from ImpactSound::kFirstSlot on are the
@@ -79,6 +82,7 @@ class Hydrophone {
   /// frame is silent. Clipped samples are counted.
   void Render(const ListenerAt& listener, std::span<std::int32_t> counts);
   std::int64_t clipped_samples() const;
+  std::int64_t dropped_samples() const;
 
  private:
   class Impl;

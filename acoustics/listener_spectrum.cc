@@ -7,6 +7,7 @@
 
 #include "acoustics/flow_noise.h"
 #include "acoustics/near_field.h"
+#include "acoustics/rolling.h"
 #include "base/check.h"
 
 namespace piperun::acoustics {
@@ -48,6 +49,11 @@ ListenerSpectrum::ListenerSpectrum(const AcousticScene& scene, const HydrophoneP
   self_ = Tabulate(std::vector<double>(bins, 1), bin_width_Hz,
                    [&](double f_Hz) { return CalcSelfNoisePsd(params, f_Hz); });
   std::transform(distant_.begin(), distant_.end(), self_.begin(), std::back_inserter(steady_), std::plus<>());
+  if (CalcRollingSpeed(scene, {.pipe = 0, .rolling_speed_m_s = 1}) > 0) {
+    rolling_ = Tabulate(high_pass, bin_width_Hz,
+                        [&](double f_Hz) { return CalcRollingPsd(scene.ambient.rolling, 1, f_Hz); });
+  }
+  scratch_.resize(bins);
   TabulateLeaks(scene, high_pass, bin_width_Hz);
 }
 
@@ -61,7 +67,7 @@ void ListenerSpectrum::TabulateLeaks(const AcousticScene& scene, const std::vect
     places.push_back(leak.place());
     spectra.push_back(
         Tabulate(high_pass, bin_width_Hz, [&](double f_Hz) { return leak.sound->VolumeVelocityPsd(f_Hz); }));
-    LeakRow& row = leaks_.emplace_back(LeakRow{leak.id, leak.place(), wave.bore_radius_m, {}});
+    LeakRow& row = leaks_.emplace_back(LeakRow{leak.id, leak.place(), leak.times, wave.bore_radius_m, {}});
     row.near = Tabulate(high_pass, bin_width_Hz, [&](double f_Hz) {
       return CalcNearField(wave, 0, f_Hz) * CalcLeakPsdAtHole(scene, leak, f_Hz);
     });
@@ -72,11 +78,12 @@ void ListenerSpectrum::TabulateLeaks(const AcousticScene& scene, const std::vect
 void ListenerSpectrum::Calc(const ListenerState& listener, std::span<float> psd) {
   std::copy(steady_.begin(), steady_.end(), psd.begin());
   AddEddies(listener, psd);
+  AddRolling(listener, psd);
   for (std::size_t leak = 0; leak < leaks_.size(); ++leak) AddLeak(leak, listener, psd);
 }
 
 std::string ListenerSpectrum::StemName(std::size_t stem) const {
-  constexpr const char* kOthers[] = {"distant", "flow", "self"};
+  constexpr const char* kOthers[] = {"distant", "flow", "self"};  // flow: rolling, too
   Demand(stem < stems(), "the spectrum has that stem");
   return stem < leaks_.size() ? leaks_[stem].id : kOthers[stem - leaks_.size()];
 }
@@ -85,9 +92,19 @@ void ListenerSpectrum::CalcStem(std::size_t stem, const ListenerState& listener,
   Demand(stem < stems(), "the spectrum has that stem");
   std::fill(psd.begin(), psd.end(), 0.F);
   if (stem < leaks_.size()) return AddLeak(stem, listener, psd);
-  if (stem == leaks_.size() + 1) return AddEddies(listener, psd);
+  if (stem == leaks_.size() + 1) {
+    AddEddies(listener, psd);
+    return AddRolling(listener, psd);
+  }
   const std::vector<float>& row = stem == leaks_.size() ? distant_ : self_;
   std::copy(row.begin(), row.end(), psd.begin());
+}
+
+void ListenerSpectrum::AddRolling(const ListenerState& listener, std::span<float> psd) const {
+  const double speed_m_s = listener.rolling_speed_m_s;
+  if (rolling_.empty() || speed_m_s == 0) return;
+  const auto gain = static_cast<float>(speed_m_s * speed_m_s * speed_m_s);
+  for (std::size_t k = 1; k < psd.size(); ++k) psd[k] += gain * rolling_[k];
 }
 
 void ListenerSpectrum::AddEddies(const ListenerState& listener, std::span<float> psd) {
@@ -97,12 +114,19 @@ void ListenerSpectrum::AddEddies(const ListenerState& listener, std::span<float>
 }
 
 void ListenerSpectrum::AddLeak(std::size_t leak, const ListenerState& listener, std::span<float> psd) {
-  if (listener.pipe < 0) return;
-  field_->Add(leak, listener.place(), psd);
   const LeakRow& row = leaks_[leak];
+  const auto share = static_cast<float>(CalcPowerShare(row.times, listener.time));
+  if (listener.pipe < 0 || share == 0) return;
+  if (share == 1) {
+    field_->Add(leak, listener.place(), psd);
+  } else {
+    std::fill(scratch_.begin(), scratch_.end(), 0.F);
+    field_->Add(leak, listener.place(), scratch_);
+    for (std::size_t k = 1; k < psd.size(); ++k) psd[k] += share * scratch_[k];
+  }
   if (listener.pipe != row.place.pipe) return;
   const auto fading =
-      static_cast<float>(CalcNearFieldFading(row.bore_radius_m, listener.s_m - row.place.s_m));
+      share * static_cast<float>(CalcNearFieldFading(row.bore_radius_m, listener.s_m - row.place.s_m));
   if (fading < 1e-6F) return;
   for (std::size_t k = 1; k < psd.size(); ++k) psd[k] += fading * row.near[k];
 }

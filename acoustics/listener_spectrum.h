@@ -35,17 +35,21 @@ class ListenerSpectrum {
   struct LeakRow {
     std::string id;
     PipePlace place;
+    SoundingTimes times;
     double bore_radius_m = 0;
     std::vector<float> near;  // what the near field adds at the hole itself, behind the input stage
   };
 
   void TabulateLeaks(const AcousticScene& scene, const std::vector<double>& high_pass, double bin_width_Hz);
+  void AddRolling(const ListenerState& listener, std::span<float> psd) const;
   void AddEddies(const ListenerState& listener, std::span<float> psd);
   void AddLeak(std::size_t leak, const ListenerState& listener, std::span<float> psd);
 
   std::vector<LeakRow> leaks_;
   std::optional<BinField> field_;  // of the leaks, if any
   std::vector<float> distant_, self_, steady_;
+  std::vector<float> rolling_;  // at 1 m/s; empty: none
+  std::vector<float> scratch_;
   bool flow_noise_;
   FlowNoiseTable flow_noise_table_;
 };

@@ -30,6 +30,14 @@ std::size_t CountNodes(const AcousticNetwork& network) {
   return static_cast<std::size_t>(last + 1);
 }
 
+double FindLocalLoss_Np_m(const AcousticPipe& pipe, double s_m) {
+  double loss_Np_m = 0;
+  for (const LocalLoss& local : pipe.local_losses) {
+    if (local.s_begin_m < s_m && s_m < local.s_end_m) loss_Np_m += local.loss_Np_m;
+  }
+  return loss_Np_m;
+}
+
 /// Least losses on the way from any source to all nodes (Dijkstra, Numer. Math. 1, 269 (1959)).
 class LossSearch {
  public:
@@ -94,6 +102,12 @@ void NetworkField::Divide(const std::vector<PipePlace>& sources) {
   for (const PipePlace& place : sources) source_nodes_.push_back(FindOrMakeNode(place, cuts));
   for (const ShuntHole& hole : network_.holes) hole_nodes_.push_back(FindOrMakeNode(hole.place, cuts));
   for (std::size_t i = 0; i < cuts.size(); ++i) {
+    for (const LocalLoss& local : network_.pipes[i].local_losses) {
+      FindOrMakeNode({static_cast<int>(i), local.s_begin_m}, cuts);
+      FindOrMakeNode({static_cast<int>(i), local.s_end_m}, cuts);
+    }
+  }
+  for (std::size_t i = 0; i < cuts.size(); ++i) {
     const AcousticPipe& pipe = network_.pipes[i];
     first_stretch_.push_back(stretches_.size());
     std::sort(cuts[i].begin(), cuts[i].end());
@@ -101,7 +115,8 @@ void NetworkField::Divide(const std::vector<PipePlace>& sources) {
     double begin_m = 0;
     int from = pipe.from_node;
     for (const auto& [s_m, node] : cuts[i]) {
-      stretches_.push_back({static_cast<int>(i), begin_m, s_m - begin_m, from, node});
+      const double local_Np_m = FindLocalLoss_Np_m(pipe, 0.5 * (begin_m + s_m));
+      stretches_.push_back({static_cast<int>(i), begin_m, s_m - begin_m, local_Np_m, from, node});
       begin_m = s_m;
       from = node;
     }
@@ -128,7 +143,8 @@ void NetworkField::FindReach(Band& band) const {
   LossSearch search(static_cast<std::size_t>(nodes_));
   const double f_Hz = frequencies_Hz_[band.first_frequency];
   for (const Stretch& s : stretches_)
-    search.AddWay(s.from_node, s.to_node, s.length_m * WaveOf(s).Attenuation_Np_m(f_Hz));
+    search.AddWay(s.from_node, s.to_node,
+                  s.length_m * (WaveOf(s).Attenuation_Np_m(f_Hz) + s.local_loss_Np_m));
   for (const LumpedLink& link : network_.links) search.AddWay(link.from_node, link.to_node, 0);
   for (const int node : source_nodes_) search.AddSource(node);
   const std::vector<double> loss_Np = search.Run();
@@ -143,7 +159,8 @@ void NetworkField::FindReach(Band& band) const {
 
 void NetworkField::WriteEquations(const Band& band, NodalAdmittance& equations) const {
   for (const Stretch& s : stretches_)
-    equations.AddPipe(band.UnknownOf(s.from_node), band.UnknownOf(s.to_node), WaveOf(s), s.length_m);
+    equations.AddPipe(band.UnknownOf(s.from_node), band.UnknownOf(s.to_node), WaveOf(s), s.local_loss_Np_m,
+                      s.length_m);
   for (const LumpedLink& link : network_.links)
     equations.AddLink(band.UnknownOf(link.from_node), band.UnknownOf(link.to_node),
                       1 / link.resistance_Pa_s_m3);
@@ -183,6 +200,10 @@ const NetworkField::Band& NetworkField::BandOf(std::size_t frequency) const {
   return *std::prev(std::upper_bound(bands_.begin(), bands_.end(), frequency, after));
 }
 
+Complex NetworkField::Wavenumber_1_m(const Stretch& s, double f_Hz) const {
+  return CalcWavenumber_1_m(WaveOf(s), f_Hz) - Complex(0, s.local_loss_Np_m);
+}
+
 std::size_t NetworkField::FindStretch(const PipePlace& place) const {
   const auto i = static_cast<std::size_t>(place.pipe);
   Demand(place.pipe >= 0 && i < network_.pipes.size(), "the acoustic network has that pipe");
@@ -200,8 +221,7 @@ NetworkField::Waves NetworkField::FindWaves(std::size_t frequency, std::size_t s
   const Complex* pressures = band.pressures.data() + column * static_cast<std::size_t>(band.unknowns);
   const Complex p1 = from >= 0 ? pressures[from] : Complex(0), p2 = to >= 0 ? pressures[to] : Complex(0);
   if (from == NodalAdmittance::kGoesOn || to == NodalAdmittance::kGoesOn) return {p1, p2};
-  const Complex e =
-      std::exp(Complex(0, -1) * CalcWavenumber_1_m(WaveOf(s), frequencies_Hz_[frequency]) * s.length_m);
+  const Complex e = std::exp(Complex(0, -1) * Wavenumber_1_m(s, frequencies_Hz_[frequency]) * s.length_m);
   return {(p1 - p2 * e) / (1.0 - e * e), (p2 - p1 * e) / (1.0 - e * e)};
 }
 
@@ -211,7 +231,7 @@ Complex NetworkField::Impedance_Pa_s_m3(std::size_t frequency, std::size_t sourc
   const std::size_t stretch = FindStretch(place);
   const Waves waves = FindWaves(frequency, source, stretch);
   const Stretch& s = stretches_[stretch];
-  const Complex ik = Complex(0, 1) * CalcWavenumber_1_m(WaveOf(s), frequencies_Hz_[frequency]);
+  const Complex ik = Complex(0, 1) * Wavenumber_1_m(s, frequencies_Hz_[frequency]);
   const double x_m = place.s_m - s.begin_m;
   return waves.forward * std::exp(-ik * x_m) + waves.backward * std::exp(-ik * (s.length_m - x_m));
 }

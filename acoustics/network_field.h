@@ -44,7 +44,8 @@ class NetworkField {
     int pipe = 0;
     double begin_m = 0;
     double length_m = 0;
-    int from_node = 0;  ///< nodes of the network and, behind them, what divides pipes
+    double local_loss_Np_m = 0;  ///< beyond that of the pipe's wave
+    int from_node = 0;           ///< nodes of the network and, behind them, what divides pipes
     int to_node = 0;
   };
   std::size_t FindStretch(const PipePlace& place) const;
@@ -73,6 +74,7 @@ class NetworkField {
   const PipeWave& WaveOf(const Stretch& s) const {
     return network_.pipes[static_cast<std::size_t>(s.pipe)].wave;
   }
+  std::complex<double> Wavenumber_1_m(const Stretch& s, double f_Hz) const;
   void Divide(const std::vector<PipePlace>& sources);
   int FindOrMakeNode(const PipePlace& place, std::vector<Cuts>& cuts);
   void FindReach(Band& band) const;

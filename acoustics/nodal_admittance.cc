@@ -13,8 +13,8 @@ Complex CalcWavenumber_1_m(const PipeWave& wave, double f_Hz) {
   return {2 * std::numbers::pi * f_Hz / wave.speed_m_s, -wave.Attenuation_Np_m(f_Hz)};
 }
 
-void NodalAdmittance::AddPipe(int a, int b, const PipeWave& wave, double length_m) {
-  pipes_.push_back({a, b, &wave, length_m, nullptr, nullptr, nullptr, nullptr});
+void NodalAdmittance::AddPipe(int a, int b, const PipeWave& wave, double local_loss_Np_m, double length_m) {
+  pipes_.push_back({a, b, &wave, local_loss_Np_m, length_m, nullptr, nullptr, nullptr, nullptr});
 }
 
 void NodalAdmittance::AddLink(int a, int b, double admittance_m3_s_Pa) {
@@ -53,8 +53,8 @@ void NodalAdmittance::Fill(double f_Hz) {
   for (const PipeEntry& pipe : pipes_) {
     const double yc = 1 / pipe.wave->impedance_Pa_s_m3;
     const bool ends = pipe.a != kGoesOn && pipe.b != kGoesOn;
-    const Complex e =
-        ends ? std::exp(Complex(0, -1) * CalcWavenumber_1_m(*pipe.wave, f_Hz) * pipe.length_m) : Complex(0);
+    const Complex k_1_m = CalcWavenumber_1_m(*pipe.wave, f_Hz) - Complex(0, pipe.local_loss_Np_m);
+    const Complex e = ends ? std::exp(Complex(0, -1) * k_1_m * pipe.length_m) : Complex(0);
     const Complex y11 = yc * (1.0 + e * e) / (1.0 - e * e), y12 = -2 * yc * e / (1.0 - e * e);
     if (pipe.aa) *pipe.aa += y11;
     if (pipe.bb) *pipe.bb += y11;

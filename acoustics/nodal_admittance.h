@@ -21,7 +21,7 @@ class NodalAdmittance {
   explicit NodalAdmittance(int unknowns) : unknowns_(unknowns) {}
 
   /// Between unknowns, or ends that are none of them.
-  void AddPipe(int a, int b, const PipeWave& wave, double length_m);
+  void AddPipe(int a, int b, const PipeWave& wave, double local_loss_Np_m, double length_m);
   void AddLink(int a, int b, double admittance_m3_s_Pa);
   void AddShunt(int a, double admittance_m3_s_Pa);
   /// No more of them.
@@ -38,7 +38,7 @@ class NodalAdmittance {
   struct PipeEntry {
     int a, b;
     const PipeWave* wave;
-    double length_m;
+    double local_loss_Np_m, length_m;
     std::complex<double>*aa, *ab, *ba, *bb;  // in the matrix; nullptr where an end is no unknown
   };
 

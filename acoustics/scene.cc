@@ -5,6 +5,7 @@
 #include "acoustics/flow_noise.h"
 #include "acoustics/near_field.h"
 #include "acoustics/network_field.h"
+#include "acoustics/rolling.h"
 #include "base/check.h"
 
 namespace piperun::acoustics {
@@ -33,11 +34,17 @@ double CalcLeakPsd(const AcousticScene& scene, const SoundingLeak& leak,
 
 double CalcBackgroundPsd(const AcousticScene& scene, const ListenerState& listener, double face_radius_m,
                          double f_Hz) {
-  const double distant = CalcDistantNoisePsd(scene.ambient, f_Hz);
+  const double rolling = CalcRollingPsd(scene.ambient.rolling, CalcRollingSpeed(scene, listener), f_Hz);
+  const double distant = CalcDistantNoisePsd(scene.ambient, f_Hz) + rolling;
   const double speed_m_s = CalcEddySpeed(listener.slip_speed_m_s, listener.water_speed_m_s);
   if (!scene.ambient.flow_noise || listener.pipe < 0 || speed_m_s <= 0) return distant;
   const WallFlow flow = CalcWallFlow(speed_m_s, listener.bore_radius_m, scene.water);
   return distant + CalcWallPressurePsd(flow, f_Hz) * CalcFaceAveraging(flow, face_radius_m, f_Hz);
+}
+
+double CalcRollingSpeed(const AcousticScene& scene, const ListenerState& listener) {
+  const bool sounds = scene.ambient.rolling.on && !scene.ball.gives_way && listener.pipe >= 0;
+  return sounds ? std::abs(listener.rolling_speed_m_s) : 0;
 }
 
 }  // namespace piperun::acoustics

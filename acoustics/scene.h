@@ -8,7 +8,9 @@
 #include "acoustics/acoustic_network.h"
 #include "acoustics/ambient.h"
 #include "acoustics/impact.h"
+#include "acoustics/sounding_times.h"
 #include "acoustics/source.h"
+#include "acoustics/tones.h"
 #include "base/water.h"
 
 namespace piperun::acoustics {
@@ -20,25 +22,33 @@ struct ListenerState {
   double water_speed_m_s = 0;  ///< bulk velocity where the ball is
   double slip_speed_m_s = 0;   ///< |water speed - ball speed|
   double bore_radius_m = 0;
+  TrueTime time{};               ///< when that is
+  double rolling_speed_m_s = 0;  ///< of a ball that touches the wall, along the pipe; else zero
 
   PipePlace place() const { return {pipe, s_m}; }
 };
 
-/// A leak where it sounds.
+/// What a localised source of noise is. All are heard alike; only a leak is looked for.
+enum class Role { kLeak, kDrawOff, kValve, kGasPocket };
+
+/// A leak, or another localised source of noise, where it sounds.
 struct SoundingLeak {
   std::string id;
   int pipe = 0;
   double s_m = 0;
   std::shared_ptr<const LeakSound> sound;
+  Role role = Role::kLeak;
+  SoundingTimes times{};
 
   PipePlace place() const { return {pipe, s_m}; }
 };
 
-/// The acoustic world of one run: all pipes of the network, its leaks, its background, the ball.
+/// The acoustic world of one run: all pipes of the network, its sources, its background, the ball.
 struct AcousticScene {
   AcousticNetwork network;
   std::vector<int> listening_pipes;  ///< where the ball can be, rising; empty: in all
-  std::vector<SoundingLeak> leaks;
+  std::vector<SoundingLeak> leaks;   ///< and what else sounds like one
+  std::vector<ToneSource> tones;
   AmbientParams ambient;
   WaterProperties water;
   StruckBall ball;  ///< that the hydrophone sits in
@@ -57,9 +67,13 @@ double CalcLeakPsd(const AcousticScene& scene, const SoundingLeak& leak,
                    const std::complex<double>& impedance_Pa_s_m3, const PipePlace& place, double f_Hz);
 
 /// Spectrum of everything in the water that is not a leak, on a hydrophone face of the given radius: distant
-/// noise and, in a pipe of a scene that has it, the wall pressure of the eddies that pass. One-sided,
-/// Pa^2/Hz, f > 0.
+/// noise, the rolling of a ball and, in a pipe of a scene that has it, the wall pressure of the eddies that
+/// pass. One-sided, Pa^2/Hz, f > 0.
 double CalcBackgroundPsd(const AcousticScene& scene, const ListenerState& listener, double face_radius_m,
                          double f_Hz);
+
+/// How fast a ball rolls whose rolling is heard: zero for a soft one, for one in no pipe and where the scene
+/// leaves rolling out.
+double CalcRollingSpeed(const AcousticScene& scene, const ListenerState& listener);
 
 }  // namespace piperun::acoustics

@@ -49,7 +49,7 @@ class StretchField {
   int forward_bins_ = 0, backward_bins_ = 0, cross_bins_ = 0;  // up to the last one that is not zero
   Part parts_[kParts];
   std::vector<float> re_0_, im_0_, re_1_, im_1_;  // sums at slow_step_ / 64 and the next
-  std::vector<float> power_;  // scratch
+  std::vector<float> power_;                      // scratch
   int slow_step_;
 };
 

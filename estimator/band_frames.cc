@@ -1,6 +1,8 @@
 #include "estimator/band_frames.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/check.h"
 #include "base/number.h"
@@ -46,16 +48,31 @@ void BandFrames::Prepare(const AudioBlock& block) {
   }
   rate_Hz_ = block.rate_Hz;
   frame_samples_ = std::llround(params_.frame_s * rate_Hz_);
+  samples_Pa_.resize(static_cast<std::size_t>(frame_samples_));
+  spectrum_.emplace(samples_Pa_.size(), rate_Hz_);
+  for (const auto& [low_Hz, high_Hz] : {std::pair{params_.band_low_Hz, params_.band_high_Hz},
+                                        std::pair{params_.reference_low_Hz, params_.reference_high_Hz}}) {
+    if (spectrum_->Resolves(low_Hz, high_Hz)) continue;
+    throw InputError(FormatNumber(params_.frame_s) + " s do not resolve " + FormatNumber(low_Hz) + " to " +
+                         FormatNumber(high_Hz) + " Hz; lengthen the frames",
+                     "frame_s");
+  }
   band_ = ButterworthBand(params_.band_low_Hz, params_.band_high_Hz, rate_Hz_);
-  reference_ = ButterworthBand(params_.reference_low_Hz, params_.reference_high_Hz, rate_Hz_);
 }
 
 BandFrame BandFrames::Cut(RobotTime block_stamp, std::int64_t samples_before_stamp) {
   const double n = static_cast<double>(count_);
   const Duration to_last = SampleOffset(samples_before_stamp, Rate(rate_Hz_));
   const Duration half_frame = SampleOffset(count_ - 1, Rate(rate_Hz_)) / 2;
-  const BandFrame frame{block_stamp - to_last - half_frame, power_ / n, reference_power_ / n, rectified_ / n};
-  power_ = reference_power_ = rectified_ = 0;
+  spectrum_->Transform(samples_Pa_);
+  const BandFrame frame{
+      block_stamp - to_last - half_frame,
+      spectrum_->CalcPower_Pa2(params_.band_low_Hz, params_.band_high_Hz),
+      rectified_ / n,
+      spectrum_->CalcMeanSquare_Pa2(params_.band_low_Hz, params_.band_high_Hz),
+      spectrum_->CalcMeanSquare_Pa2(params_.reference_low_Hz, params_.reference_high_Hz),
+  };
+  rectified_ = 0;
   count_ = 0;
   return frame;
 }

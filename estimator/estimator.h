@@ -47,13 +47,27 @@ struct NavState {
   int nis_dof = 0;
 };
 
+/// From one chainage to another.
+struct ChainageInterval {
+  double low_m = 0, high_m = 0;
+  bool Holds(double chainage_m) const { return low_m <= chainage_m && chainage_m <= high_m; }
+};
+
+/// The middle 95 % of a normal distribution.
+inline ChainageInterval CalcNormalInterval(double mean_m, double sigma_m) {
+  constexpr double kQuantile975 = 1.959963984540054;
+  return {mean_m - kQuantile975 * sigma_m, mean_m + kQuantile975 * sigma_m};
+}
+
 struct LeakEstimate {
   RobotTime t_cpa{};  ///< closest point of approach
   double chainage_m = 0;
-  double sigma_m = 0;
+  double sigma_m = 0;           ///< of the sound's place on the track and of the track
+  ChainageInterval interval{};  ///< holds the leak with a probability of 95 %
   Vector3d p_W = Vector3d::Zero();
   std::optional<double> flow_m3_s;
-  double confidence = 0;  ///< 0 to 1
+  double flow_sigma_dB = 0;  ///< standard deviation of 20 lg flow, calibration included
+  double confidence = 0;     ///< 0 to 1
 };
 
 /// What Finish() may add: the track again, using all measurements.

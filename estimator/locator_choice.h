@@ -20,6 +20,7 @@ class LocatorChoice {
   /// The kind first, then its parameters.
   void Visit(ParamVisitor& v);
   bool none() const { return !params_; }
+  const std::string& kind() const { return kind_; }
   /// Nothing for "none".
   std::unique_ptr<LeakLocator> Make(const EstimatorStart& start) const;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace piperun::estimator {
 namespace {
@@ -70,9 +71,11 @@ FitQuality CalcQuality(const BinRange& bins, double x0_m, const Roof& roof, cons
   const double r = squares > 0 ? std::clamp(products / squares, 0.0, 0.95) : 0;
   const double inflation = (1 + r) / (1 - r);
   FitQuality quality;
+  quality.variance_dB2 = std::numeric_limits<double>::infinity();
   quality.freedom = n / inflation - kFitted;
-  if (quality.freedom < 1) return quality;
+  if (n <= kFitted) return quality;
   quality.variance_dB2 = inflation * squares / (n - kFitted);
+  if (quality.freedom < 1) return quality;
   if (fit.reduction_dB2 == 0) return quality;
   const double t2 = fit.reduction_dB2 / quality.variance_dB2;
   quality.z = std::sqrt(quality.freedom * std::log1p(t2 / quality.freedom));

@@ -38,7 +38,8 @@ struct RoofFit {
 
 /// How well a fit explains the bins, their noise estimated from its own residuals.
 struct FitQuality {
-  double variance_dB2 = 0;  ///< of a frame, inflated by (1 + r) / (1 - r) for a residual correlation r
+  double variance_dB2 = 0;  ///< of a frame, inflated by (1 + r) / (1 - r) for a residual correlation r;
+                            ///< infinite when there are too few bins to tell
   double freedom = 0;       ///< effective number of independent residuals
   double z = 0;             ///< significance of the roof as a standard normal deviate
 };

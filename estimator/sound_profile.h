@@ -8,9 +8,10 @@
 
 namespace piperun::estimator {
 
-/// Levels of one frame: of the band over the reference band, and of the band alone.
-using SoundLevels = std::array<double, 2>;
-enum class Channel : std::size_t { kRatio, kBand };
+/// Levels of one frame: of the band's noise over the reference band's, of the band's alone, of the reference
+/// band's, and of all that is in the band.
+using SoundLevels = std::array<double, 4>;
+enum class Channel : std::size_t { kRatio, kBand, kReference, kPower };
 
 /// All frames heard within one short stretch of chainage, averaged.
 struct ProfileBin {

@@ -7,6 +7,7 @@
 #include "base/number.h"
 #include "scenarios/acoustic_scene.h"
 #include "scenarios/network_params.h"
+#include "scenarios/sound_list.h"
 
 namespace piperun::scenarios {
 namespace {
@@ -121,12 +122,18 @@ std::unique_ptr<Assembly> Build(const Scenario& scenario) {
     BuildWay(scenario, *assembly);
   } else if (!scenario.leaks.empty() || scenario.random_leaks.count > 0) {
     throw InputError("a leak needs a pipe, and this scenario has no network", "leaks");
+  } else if (!scenario.sounds.empty()) {
+    throw InputError("a sound needs a pipe, and this scenario has no network", "sounds");
   } else if (!scenario.wall_features.empty()) {
     throw InputError("a wall feature needs a pipe, and this scenario has no network", "wall_features");
   }
   assembly->scene =
       MakeAcousticScene(scenario, assembly->water, assembly->pipeline ? &*assembly->pipeline : nullptr,
                         assembly->bore ? &*assembly->bore : nullptr);
+  if (assembly->pipeline) {
+    for (std::string& note : AddSounds(scenario, *assembly->pipeline, assembly->scene))
+      assembly->pipeline->notes.push_back(std::move(note));
+  }
   BuildMotion(scenario, *assembly);
   BuildChannels(scenario, *assembly);
   return assembly;

@@ -92,12 +92,14 @@ acoustics::ListenerState CalcListener(const sim::TruthState& truth, const Networ
   listener.pipe = truth.pipe;
   listener.s_m = truth.s_m;
   listener.water_speed_m_s = truth.water_speed_m_s;
+  listener.time = truth.time;
   if (truth.pipe < 0) return listener;
   const Pipe& pipe = network.pipe(truth.pipe);
   listener.bore_radius_m = pipe.RadiusAt_m(truth.s_m);
   const double speed_along_pipe = truth.v_WB_W.dot(pipe.Eval(truth.s_m).tangent_W);
   const double ball_speed = truth.reversed ? -speed_along_pipe : speed_along_pipe;
   listener.slip_speed_m_s = std::abs(truth.water_speed_m_s - ball_speed);
+  if (truth.contact) listener.rolling_speed_m_s = std::abs(speed_along_pipe);
   return listener;
 }
 

@@ -64,6 +64,7 @@ class HydrophoneChannel : public Channel {
   Duration history() const override;
   const Measurement* Take(const sim::TruthWindow& window) override;
   std::int64_t clipped_samples() const { return hydrophone_.clipped_samples(); }
+  std::int64_t dropped_samples() const { return hydrophone_.dropped_samples(); }
 
  private:
   RobotTime StampOf(std::int64_t sample) const;
@@ -78,8 +79,9 @@ class HydrophoneChannel : public Channel {
   Measurement measurement_;
 };
 
-/// What a hydrophone in the ball knows of its surroundings: the bore at its place, and its slip |u - v . t|
-/// with t the pipe's tangent along the way taken.
+/// What a hydrophone in the ball knows of its surroundings: the bore at its place, its slip |u - v . t| with
+/// t the pipe's tangent along the way taken, and how fast it rolls or slides, |v . t| while it touches the
+/// wall.
 acoustics::ListenerState CalcListener(const sim::TruthState& truth, const Network& network);
 
 /// How long a collision takes, as a half-sine of its impulse J and its peak force F, T = pi J/(2 F), when the

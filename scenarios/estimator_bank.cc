@@ -5,6 +5,8 @@
 #include "base/check.h"
 #include "base/number.h"
 #include "scenarios/csv_row.h"
+#include "scenarios/dig_points.h"
+#include "scenarios/output_file.h"
 
 namespace piperun::scenarios {
 namespace {
@@ -109,7 +111,7 @@ struct EstimatorBank::Member {
 
 EstimatorBank::EstimatorBank(const EstimatorInput& input, const std::filesystem::path& estimates_folder,
                              TruthAt truth)
-    : track_rate_(input.track_rate_Hz), truth_(std::move(truth)) {
+    : track_rate_(input.track_rate_Hz), origin_(input.map.origin), truth_(std::move(truth)) {
   for (const ToldEstimator& told : input.estimators) {
     members_.push_back(std::make_unique<Member>(input, told, estimates_folder));
   }
@@ -156,6 +158,8 @@ std::vector<EstimatorResult> EstimatorBank::Finish(const std::vector<TrueLeak>& 
     member->track.Close();
     member->tum.Close();
     WriteLeaks(member->folder / "leaks.csv", member->estimator->leaks());
+    if (origin_.known())
+      WriteTextFile(member->folder / "leaks.geojson", WriteDigPoints(origin_, member->estimator->leaks()));
     EstimatorResult result;
     result.name = member->name;
     result.causal = member->score.Score();

@@ -38,6 +38,7 @@ class EstimatorBank {
   void CompleteTracks();
 
   Rate track_rate_;
+  GeoOrigin origin_;
   std::optional<std::int64_t> next_track_;  ///< the grid begins with the first measurement
   TruthAt truth_;
   RobotTime last_stamp_{};

@@ -123,6 +123,7 @@ void MapLeg::Visit(ParamVisitor& v) {
 void MapParams::Visit(ParamVisitor& v) {
   v.Struct({"network", "Nodes and pipes as drawn."}, network);
   v.Items({"way", "The planned way, pipe by pipe; chainage 0 at its beginning."}, way);
+  v.Struct({"origin", "Where on earth its coordinates begin."}, origin);
 }
 
 void ToldParams::Visit(ParamVisitor& v) {
@@ -169,6 +170,7 @@ EstimatorInput MakeEstimatorInput(const Scenario& scenario, const Assembly& asse
     input.channels.push_back({name, TypeOfChannel(scenario, name)});
   }
   if (assembly.pipeline) input.map = MakeMap(*assembly.pipeline);
+  input.map.origin = scenario.network.origin;
   for (const EstimatorEntry& entry : scenario.estimators) {
     input.estimators.push_back(
         {entry.name, entry.kind,

@@ -20,6 +20,7 @@ struct MapLeg {
 struct MapParams {
   NetworkParams network;
   std::vector<MapLeg> way;
+  GeoOrigin origin;
   void Visit(ParamVisitor& v);
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "acoustics/hydrophone.h"
+#include "acoustics/sound.h"
 #include "acoustics/source.h"
 #include "base/check.h"
 #include "estimator/filter_kind.h"
@@ -50,6 +51,10 @@ const std::vector<KindOption>& MotionOptions() {
 }
 const std::vector<KindOption>& LeakSoundOptions() {
   static const std::vector<KindOption> options = MakeOptions(acoustics::LeakSoundKinds());
+  return options;
+}
+const std::vector<KindOption>& SoundOptions() {
+  static const std::vector<KindOption> options = MakeOptions(acoustics::SoundKinds());
   return options;
 }
 const std::vector<KindOption>& WallFeatureOptions() {

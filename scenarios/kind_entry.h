@@ -23,6 +23,7 @@ struct KindOption {
 const std::vector<KindOption>& SensorOptions();  ///< the sensors of sim/, and the hydrophone
 const std::vector<KindOption>& MotionOptions();
 const std::vector<KindOption>& LeakSoundOptions();
+const std::vector<KindOption>& SoundOptions();
 const std::vector<KindOption>& WallFeatureOptions();
 const std::vector<KindOption>& FilterOptions();
 

@@ -62,9 +62,17 @@ void RequireOneNetwork(const Scenario& scenario) {
   }
 }
 
+void RequireWholeOrigin(const Scenario& scenario) {
+  const GeoOrigin& origin = scenario.network.origin;
+  if (origin.latitude_deg.has_value() == origin.longitude_deg.has_value()) return;
+  throw InputError("has only one of latitude_deg and longitude_deg; give both", "network.origin",
+                   scenario.sources.Find("network.origin"));
+}
+
 /// Reads the files that a scenario refers to.
 void LoadFiles(const std::filesystem::path& folder, Scenario& scenario) {
   RequireOneNetwork(scenario);
+  RequireWholeOrigin(scenario);
   NetworkSource& network = scenario.network;
   if (!network.inp.empty()) network.inp_text = ReadInpText(scenario, folder);
   if (network.material_rules.empty()) return;

@@ -162,6 +162,7 @@ class AudioChannelWriter : public MeasurementWriter {
     for (const std::int32_t count : block.counts)
       description_.clipped_samples += std::abs(count) >= largest_code_;
   }
+  void CountDropped(std::int64_t samples) override { description_.dropped_samples = samples; }
   void Close() override {
     file_.Close();
     WriteSensorYaml(folder_, entry_, Pose{}, [this](ParamVisitor& v) { description_.Visit(v); });
@@ -186,6 +187,8 @@ void AudioDescription::Visit(ParamVisitor& v) {
   v.Number({"scale_Pa", "Pressure of one count.", true}, Range::Positive(), scale_Pa);
   v.Integer({"start_ns", "Stamp of sample 0.", true}, INT64_MIN, INT64_MAX, start_ns);
   v.Integer({"clipped_samples", "Samples at the end of the scale.", true}, 0, INT64_MAX, clipped_samples);
+  v.Integer({"dropped_samples", "Zeros that stand for samples lost in drop-outs."}, 0, INT64_MAX,
+            dropped_samples);
 }
 
 std::unique_ptr<MeasurementWriter> MakeMeasurementWriter(const SensorEntry& entry, const Pose& X_BS,

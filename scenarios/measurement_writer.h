@@ -15,6 +15,8 @@ class MeasurementWriter {
  public:
   virtual ~MeasurementWriter() = default;
   virtual void Write(const Measurement& measurement) = 0;
+  /// How many audio samples are zeros because they were lost; to be told before Close().
+  virtual void CountDropped(std::int64_t) {}
   /// Completes the files.
   virtual void Close() = 0;
 };
@@ -40,6 +42,7 @@ struct AudioDescription {
   double scale_Pa = 0;
   std::int64_t start_ns = 0;
   std::int64_t clipped_samples = 0;
+  std::int64_t dropped_samples = 0;
   void Visit(ParamVisitor& v);
 };
 

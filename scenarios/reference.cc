@@ -119,6 +119,7 @@ std::string WriteReference() {
   WriteKinds(out, "Motion", MotionOptions());
   WriteKinds(out, "Sensor", SensorOptions());
   WriteKinds(out, "Leak sound", LeakSoundOptions());
+  WriteKinds(out, "Sound", SoundOptions());
   WriteKinds(out, "Wall feature", WallFeatureOptions());
   WriteKinds(out, "Estimator", FilterOptions());
   return out;

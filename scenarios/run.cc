@@ -119,7 +119,11 @@ class RunLoop {
     result.duration_s = Seconds(assembly_.motion->state().time);
     result.leaks = truth_.Close(FindHydrophone(scenario_));
     result.contacts = truth_.contacts();
-    for (const auto& writer : writers_) writer->Close();
+    for (std::size_t i = 0; i < writers_.size(); ++i) {
+      const auto* hydrophone = dynamic_cast<const HydrophoneChannel*>(assembly_.channels[i].get());
+      if (hydrophone) writers_[i]->CountDropped(hydrophone->dropped_samples());
+      writers_[i]->Close();
+    }
     result.estimators = bank_.Finish(result.leaks, scenario_.score.match_radius_m,
                                      [this] { return OpenTruth(truth_file_, assembly_.clock); });
     return result;

@@ -48,12 +48,17 @@ Json ToJson(const std::optional<TrackScore>& score) {
 Json ToJson(const ScoredLeak& leak) {
   return {{"chainage_m", Number(leak.estimate.chainage_m)},
           {"sigma_m", Number(leak.estimate.sigma_m)},
+          {"interval_m",
+           Json::array({Number(leak.estimate.interval.low_m), Number(leak.estimate.interval.high_m)})},
           {"position_m", Position(leak.estimate.p_W)},
           {"t_cpa_ns", leak.estimate.t_cpa.time_since_epoch().count()},
           {"flow_m3_s", OrNull(leak.estimate.flow_m3_s)},
+          {"flow_sigma_dB", leak.estimate.flow_m3_s ? Json(leak.estimate.flow_sigma_dB) : Json()},
           {"confidence", Number(leak.estimate.confidence)},
           {"match", OrNull(leak.match)},
-          {"error_m", OrNull(leak.error_m)}};
+          {"error_m", OrNull(leak.error_m)},
+          {"covered", OrNull(leak.covered)},
+          {"flow_error_dB", OrNull(leak.flow_error_dB)}};
 }
 
 Json ToJson(const EstimatorResult& result) {

@@ -112,6 +112,9 @@ void NetworkSource::Visit(ParamVisitor& v) {
   v.Text({"material_rules",
           "EPANET file: rules that give every pipe its material and wall (empty: piperun's own)."},
          material_rules);
+  v.Struct(
+      {"origin", "Where on earth the coordinates begin; then leaks are also written as dig points, GeoJSON."},
+      origin);
   NetworkParams::Visit(v);
 }
 
@@ -140,6 +143,18 @@ void LeakEntry::Visit(ParamVisitor& v) {
            Range::Between(0, 1e-3), area_slope_m);
   v.Number({"cd", "Discharge coefficient of the hole."}, {.min = 0, .max = 1, .min_open = true}, cd);
   v.Struct({"sound", "How it sounds."}, sound);
+}
+
+void SoundEntry::Visit(ParamVisitor& v) {
+  v.Text({"id", "Name of the sound; no leak has the same.", true}, id);
+  v.Text({"pipe", "Pipe it is in; empty: it is at a node."}, pipe);
+  v.Number({"s_m", "Distance along that pipe from its `from` node."}, Range::NonNegative(), s_m);
+  v.Text({"node", "Node it is at, instead of a place in a pipe."}, node);
+  v.NumberOr({"on_s", "When it begins, after the launch."}, Range::Between(-1e6, 1e6), "always", on_s);
+  v.NumberOr({"off_s", "When it ends."}, Range::Between(-1e6, 1e6), "never", off_s);
+  v.Number({"ramp_s", "How long it takes to begin, after on_s, and to end, before off_s."},
+           Range::Between(0.001, 3600), ramp_s);
+  kind.Visit(v);
 }
 
 void WallFeatureEntry::Visit(ParamVisitor& v) {
@@ -261,6 +276,7 @@ void Scenario::Visit(ParamVisitor& v) {
   v.Struct({"ambient", "What the hydrophone hears besides leaks."}, ambient);
   v.Items({"leaks", "Holes in the wall."}, leaks);
   v.Struct({"random_leaks", "Holes drawn by seed and run."}, random_leaks);
+  v.Items({"sounds", "What sounds and is no leak: pumps, draw-offs, valves, gas pockets."}, sounds);
   v.Items({"wall_features", "What the ball runs into: joints, beads, scale, valves, holes."}, wall_features);
   v.Struct({"motion", "What moves the ball."}, motion);
   v.Struct({"ball", "The ball."}, ball);

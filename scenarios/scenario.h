@@ -9,6 +9,7 @@
 
 #include "acoustics/ambient.h"
 #include "base/params.h"
+#include "scenarios/geo_origin.h"
 #include "scenarios/kind_entry.h"
 #include "scenarios/yaml_document.h"
 #include "sim/ball.h"
@@ -68,6 +69,7 @@ struct NetworkSource : NetworkParams {
   std::optional<double> map_unit_m;  ///< nothing: fitted to the stated lengths
   double bend_radius_diameters = 1.5;
   std::string material_rules;
+  GeoOrigin origin;
   std::string inp_text;             ///< of the file `inp`, read with the scenario
   std::string material_rules_text;  ///< of the file `material_rules`; empty: piperun's own rules
   void Visit(ParamVisitor& v);
@@ -89,6 +91,19 @@ struct LeakEntry {
   double area_slope_m = 0;
   double cd = 0.6;
   KindEntry sound{LeakSoundOptions, "turbulent_jet"};
+  void Visit(ParamVisitor& v);
+};
+
+/// Something that sounds and is no leak.
+struct SoundEntry {
+  std::string id;
+  std::string pipe;
+  double s_m = 0;
+  std::string node;             ///< instead of pipe and s_m
+  std::optional<double> on_s;   ///< nothing: from the beginning
+  std::optional<double> off_s;  ///< nothing: to the end
+  double ramp_s = 0.1;
+  KindEntry kind{SoundOptions, "draw_off"};
   void Visit(ParamVisitor& v);
 };
 
@@ -198,6 +213,7 @@ struct Scenario {
   acoustics::AmbientParams ambient;
   std::vector<LeakEntry> leaks;
   RandomLeaksParams random_leaks;
+  std::vector<SoundEntry> sounds;
   std::vector<WallFeatureEntry> wall_features;
   KindEntry motion{MotionOptions, "ball_in_pipe"};
   BallEntry ball;

@@ -85,6 +85,9 @@ LeakScore ScoreLeaks(const std::vector<estimator::LeakEstimate>& estimates,
     found[pair.leak] = true;
     scored.match = truth[pair.leak].id;
     scored.error_m = scored.estimate.chainage_m - *truth[pair.leak].chainage_m;
+    scored.covered = scored.estimate.interval.Holds(*truth[pair.leak].chainage_m);
+    if (scored.estimate.flow_m3_s && truth[pair.leak].flow_m3_s > 0)
+      scored.flow_error_dB = 20 * std::log10(*scored.estimate.flow_m3_s / truth[pair.leak].flow_m3_s);
   }
   for (std::size_t j = 0; j < truth.size(); ++j) {
     if (!found[j] && truth[j].chainage_m) score.missed.push_back(truth[j].id);

@@ -60,7 +60,9 @@ struct TrueLeak {
 struct ScoredLeak {
   estimator::LeakEstimate estimate;
   std::optional<std::string> match;
-  std::optional<double> error_m;  ///< estimated minus true chainage
+  std::optional<double> error_m;          ///< estimated minus true chainage
+  std::optional<bool> covered{};          ///< the true chainage lies in the estimate's 95 % interval
+  std::optional<double> flow_error_dB{};  ///< 20 lg (estimated / true flow), where both are
 };
 
 struct LeakScore {

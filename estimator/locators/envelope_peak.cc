@@ -109,7 +109,7 @@ class EnvelopePeak final : public FrameLocator {
 };
 
 EnvelopePeak::EnvelopePeak(const EnvelopePeakParams& params)
-    : FrameLocator(params.bands),
+    : FrameLocator(BandFrames(params.bands, true)),
       params_(params),
       kernel_(HannKernel(
           std::max<std::size_t>(1, static_cast<std::size_t>(params.smooth_s / params.bands.frame_s)))),
@@ -185,6 +185,7 @@ LeakEstimate EnvelopePeak::MakeEstimate() const {
   const double frames = bend > 0 ? std::sqrt(2 * scatter / bend) : static_cast<double>(kernel_.size());
   const double per_frame_m = 0.5 * std::abs(around_[2].ball.chainage_m - around_[0].ball.chainage_m);
   leak.sigma_m = std::hypot(frames * per_frame_m, peak.chainage_sd_m);
+  leak.interval = CalcNormalInterval(leak.chainage_m, leak.sigma_m);
   leak.confidence = std::clamp(1 - floor_Pa_ / b, 0.0, 1.0);
   return leak;
 }

@@ -28,7 +28,7 @@ THIRD_PARTIES = [
     ("Eigen", r"Eigen/", r".*", False),
     ("Random123", r"Random123/", r"base/random\.cc", False),
     ("Bullet", r"(bullet/|bt[A-Z]|LinearMath/|BulletCollision/|BulletDynamics/)", r"sim/bullet/.*", False),
-    ("libsndfile", r"sndfile", r"acoustics/audio_file\.cc", False),
+    ("libsndfile", r"sndfile", r"acoustics/(audio|sound)_file\.cc", False),
     ("libsamplerate", r"samplerate", r"acoustics/[^/]*\.cc", True),
     ("kissfft", r"kiss_?fft", r"(acoustics|estimator)/[^/]*\.cc", True),
     ("yaml-cpp", r"yaml-cpp/", r"scenarios/[^/]*\.cc", False),
@@ -43,7 +43,7 @@ THIRD_PARTIES = [
 ]
 TESTS_MAY_READ_BACK_WITH = {"libsndfile", "nlohmann-json", "yaml-cpp", "kissfft", "Bullet"}
 OPERATING_SYSTEM = re.compile(r"(unistd|fcntl|signal|dlfcn|errno|time|stdio|stdlib|string|termios)\.h$|(sys|linux)/")
-OPERATING_SYSTEM_USERS = r"(scenarios|tools|tests)/.*|acoustics/audio_file\.cc"
+OPERATING_SYSTEM_USERS = r"(scenarios|tools|tests)/.*|acoustics/(audio|sound)_file\.cc"
 PRIVATE_FOLDERS = {Path("sim/bullet"): "sim"}
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*(?:<([^>]+)>|"([^"]+)")')

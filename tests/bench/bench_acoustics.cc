@@ -1,5 +1,6 @@
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "acoustics/hydrophone.h"
@@ -23,8 +24,12 @@ const WallMaterial kIron{.name = "ductile_iron",
                          .density_kg_m3 = 7100,
                          .roughness_m = 1e-4};
 
+const LeakSoundKind& FindJet() {
+  return *std::ranges::find(LeakSoundKinds(), "turbulent_jet", &LeakSoundKind::name);
+}
+
 void AddLeak(AcousticScene& scene, int pipe, double s_m) {
-  const LeakSoundKind& kind = LeakSoundKinds().front();
+  const LeakSoundKind& kind = FindJet();
   scene.leaks.push_back({"L", pipe, s_m,
                          kind.make(*kind.make_params(), 2e-3, {.flow_m3_s = 4.6e-5, .pressure_drop_Pa = 3e5},
                                    kWater.density_kg_m3)});

@@ -125,6 +125,84 @@ TEST(LeakLocator, TwoLeaksFiveMetresApartAreTwo) {
   }
 }
 
+const WallMaterial kIron{"ductile_iron", 165e9, 0.02, 0.28, 7050, 1e-4};
+
+/// Pipes in a row, each to an end, of DN150 plastic or iron.
+EstimatorStart StartAlong(const std::vector<std::pair<double, WallMaterial>>& pipes) {
+  std::vector<NodeSpec> nodes{{"N0", {0, 0, 0}}};
+  std::vector<PipeSpec> specs;
+  std::vector<RouteLeg> legs;
+  for (const auto& [end_m, wall] : pipes) {
+    nodes.push_back({"N" + std::to_string(nodes.size()), {end_m, 0, 0}});
+    PipeSpec pipe;
+    pipe.id = "P" + std::to_string(specs.size());
+    pipe.from = nodes[nodes.size() - 2].id;
+    pipe.to = nodes.back().id;
+    pipe.diameter_m = wall.name == "ductile_iron" ? 0.158 : 0.1475;
+    pipe.wall_thickness_m = wall.name == "ductile_iron" ? 0.006 : 0.0075;
+    pipe.material = wall;
+    legs.push_back({static_cast<int>(specs.size()), false});
+    specs.push_back(pipe);
+  }
+  Network network(nodes, specs);
+  Route route(network, legs);
+  EstimatorStart start;
+  start.map = RouteMap{std::move(network), std::move(route)};
+  return start;
+}
+
+std::vector<LeakEstimate> LocateAlong(const EstimatorStart& start, const SoundScene& scene,
+                                      std::uint64_t seed) {
+  const auto locator = MakeLocator("matched_filter", start);
+  SoundRecord(scene, seed).Feed(*locator, 1600);
+  return locator->leaks();
+}
+
+TEST(LeakLocator, APumpsToneDoesNotMakeADriftingBackgroundLookLikeALeakSlow) {
+  // the tone stands 15 dB over all noise of the reference band, which so no longer follows the drift
+  SoundScene scene;
+  scene.length_m = 700;
+  scene.speed_m_s = 1;
+  scene.attenuation_dB_m_kHz = 0.12;
+  scene.drift_dB = 2;
+  scene.tone_Pa = 0.6;
+  const EstimatorStart iron = StartAlong({{700, kIron}});
+  EXPECT_TRUE(LocateAlong(iron, scene, 1).empty());
+  scene.leaks = {{350, 10}};
+  const auto leaks = LocateAlong(iron, scene, 2);
+  ASSERT_EQ(leaks.size(), 1u);
+  EXPECT_NEAR(leaks[0].chainage_m, 350, 2);
+  EXPECT_TRUE(leaks[0].interval.Holds(350));
+}
+
+TEST(LeakLocator, AWayFromIronIntoPlasticIsHeardWithTemplatesOfBothSlow) {
+  // a roof 12 dB high is 50 m wide to each side in iron and 2 m in plastic
+  SoundScene scene;
+  scene.length_m = 500;
+  scene.speed_m_s = 1;
+  scene.attenuation_dB_m_kHz = 0.12;
+  scene.second_from_m = 400;
+  scene.second_attenuation_dB_m_kHz = 3.2;
+  scene.leaks = {{180, 10}, {450, 10}};
+  const auto leaks = LocateAlong(StartAlong({{400, kIron}, {500, PvcU()}}), scene, 3);
+  ASSERT_EQ(leaks.size(), 2u);
+  EXPECT_NEAR(leaks[0].chainage_m, 180, 2);
+  EXPECT_NEAR(leaks[1].chainage_m, 450, 0.1);
+  EXPECT_LT(leaks[1].sigma_m, 0.25 * leaks[0].sigma_m);
+}
+
+TEST(LeakLocator, ALeakBesideATeeIsOneLeakAtItsPlace) {
+  // behind the tee it is 3.52 dB weaker, in both bands alike
+  for (const double leak_m : {11.0, 12.8}) {
+    SoundScene scene;
+    scene.tee_m = 12;
+    scene.leaks = {{leak_m, 12}};
+    const auto leaks = Locate("matched_filter", scene, 5);
+    ASSERT_EQ(leaks.size(), 1u) << leak_m;
+    EXPECT_NEAR(leaks[0].chainage_m, leak_m, 0.15);
+  }
+}
+
 TEST(LeakLocator, QuietPipeGivesNoFalseAlarmSlow) {
   // 2 km at the promised 0.1 per km: more than two would have a probability of 0.1 %
   SoundScene scene;

@@ -32,7 +32,20 @@ struct SoundScene {
   double drift_length_m = 20;
   double joint_spacing_m = 0;  ///< 0: none
   double joint_dB = 10;
+  double second_from_m = 1e9;  ///< from here on the wall is another one
+  double second_attenuation_dB_m_kHz = 0;
+  double tee_m = -1e9;  ///< a tee between three equal pipes: who is heard through it is 3.52 dB weaker
+  double tone_Pa = 0;   ///< amplitude of a pump's tone
+  double tone_Hz = 298;
   std::vector<Leak> leaks;
+
+  /// Loss in dB per kHz between two places, without the tee.
+  double Loss_dB_kHz(double a_m, double b_m) const {
+    const double low = std::min(a_m, b_m), high = std::max(a_m, b_m);
+    const double second_m = std::max(0.0, high - std::max(low, second_from_m));
+    return attenuation_dB_m_kHz * (high - low - second_m) + second_attenuation_dB_m_kHz * second_m;
+  }
+  double TeeLoss_dB(double a_m, double b_m) const { return (a_m < tee_m) != (b_m < tee_m) ? 3.52 : 0; }
 };
 
 constexpr double kScale_Pa = 1e-6;
@@ -117,7 +130,8 @@ inline SoundRecord::SoundRecord(const SoundScene& scene, std::uint64_t seed) : s
         double power = 0;
         const double centre_kHz = 1e-3 * std::sqrt(kLeakBands[b].low_Hz * kLeakBands[b].high_Hz);
         for (const SoundScene::Leak& leak : scene.leaks) {
-          const double loss_dB = scene.attenuation_dB_m_kHz * centre_kHz * std::abs(x - leak.chainage_m);
+          const double loss_dB =
+              centre_kHz * scene.Loss_dB_kHz(x, leak.chainage_m) + scene.TeeLoss_dB(x, leak.chainage_m);
           power += mean_psd * std::pow(10, 0.1 * (leak.snr_dB - loss_dB));
         }
         gain[b] = std::sqrt(power);
@@ -125,6 +139,9 @@ inline SoundRecord::SoundRecord(const SoundScene& scene, std::uint64_t seed) : s
     }
     double p = level * background.Step(white.Next(), floor.Next());
     if (burst > 0) p += burst * joints.Next();
+    if (scene.tone_Pa > 0)
+      p += scene.tone_Pa *
+           std::cos(2 * std::numbers::pi * scene.tone_Hz * static_cast<double>(i) / scene.rate_Hz);
     if (!scene.leaks.empty()) {
       for (std::size_t b = 0; b < bands.size(); ++b) p += gain[b] * bands[b].Step(leak_white.Next());
     }
