@@ -1,5 +1,6 @@
 #include "acoustics/complex_normals.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -29,7 +30,7 @@ ComplexNormals::ComplexNormals() {
   }
 }
 
-float ComplexNormals::Exponential(std::uint64_t word) const {
+inline float ComplexNormals::Exponential(std::uint64_t word) const {
   const int octave = std::countl_zero(word | kOctaveStop) + 1;
   return static_cast<float>(octave) * std::numbers::ln2_v<float> -
          mantissa_logs_[(word >> kIndexBits) % kCells];
@@ -38,11 +39,12 @@ float ComplexNormals::Exponential(std::uint64_t word) const {
 void ComplexNormals::Draw(const RandomStream& random, std::uint64_t sample, std::span<float> exponentials,
                           std::span<std::complex<float>> phasors) const {
   Demand(exponentials.size() == phasors.size(), "one phase per modulus");
-  std::array<std::uint64_t, 4> words{};
-  for (std::size_t k = 0; k < phasors.size(); ++k) {
-    if (k % 4 == 0) words = random.Bits(sample, k / 4);
-    exponentials[k] = Exponential(words[k % 4]);
-    phasors[k] = phasors_[words[k % 4] % kCells];
+  std::array<std::uint64_t, 256> words;
+  for (std::size_t begin = 0; begin < phasors.size(); begin += words.size()) {
+    const std::size_t count = std::min(words.size(), phasors.size() - begin);
+    random.FillBits(sample, begin / 4, std::span(words).first(count));
+    for (std::size_t i = 0; i < count; ++i) exponentials[begin + i] = Exponential(words[i]);
+    for (std::size_t i = 0; i < count; ++i) phasors[begin + i] = phasors_[words[i] % kCells];
   }
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "acoustics/vector_clones.h"
 #include "base/check.h"
 
 namespace piperun::acoustics {
@@ -29,9 +30,9 @@ GaussianFrames::GaussianFrames(std::size_t size, double rate_Hz, const RandomStr
       signal_(size),
       tail_(size / 2),
       hop_(size / 2) {
-  Demand(size >= 16 && (size & (size - 1)) == 0, "a frame is a power of two long");
-}
+  }
 
+PIPERUN_VECTOR_CLONES
 std::span<const float> GaussianFrames::Advance(std::int64_t frame, std::span<const float> psd) {
   DrawSpectrum(frame, psd);
   fft_.Transform(spectrum_, signal_);
@@ -44,6 +45,7 @@ std::span<const float> GaussianFrames::Advance(std::int64_t frame, std::span<con
 }
 
 /// The transform adds up conjugate pairs: X_k = sqrt(S df) z_k / 2 = sqrt(S df E / 2) e^(i phi).
+PIPERUN_VECTOR_CLONES
 void GaussianFrames::DrawSpectrum(std::int64_t frame, std::span<const float> psd) {
   Demand(psd.size() == bins(), "one spectral value per bin");
   normals_.Draw(random_, static_cast<std::uint64_t>(frame), exponentials_, spectrum_);

@@ -18,7 +18,7 @@ namespace piperun::acoustics {
 /// squares add up to one at half a frame's overlap, and added.
 class GaussianFrames {
  public:
-  /// `size`: N, a power of two from 16 on.
+  /// `size`: N, a power of two from 32 on.
   GaussianFrames(std::size_t size, double rate_Hz, const RandomStream& random);
 
   std::size_t hop() const { return hop_.size(); }

@@ -93,11 +93,14 @@ class Hydrophone::Impl {
   }
 
   void Quantise(std::span<const float> pressure_Pa, std::span<std::int32_t> counts) {
+    const double gain = counts_per_Pa_, largest = largest_code_;
+    std::int32_t clipped = 0;  // of a block: locals, so that the loop runs in vector registers
     for (std::size_t i = 0; i < counts.size(); ++i) {
-      const double code = RoundToEven(counts_per_Pa_ * static_cast<double>(pressure_Pa[i]));
-      clipped_samples_ += std::abs(code) > largest_code_;
-      counts[i] = static_cast<std::int32_t>(std::clamp(code, -largest_code_, largest_code_));
+      const double code = RoundToEven(gain * static_cast<double>(pressure_Pa[i]));
+      clipped += static_cast<std::int32_t>(std::abs(code) > largest);
+      counts[i] = static_cast<std::int32_t>(std::max(-largest, std::min(largest, code)));
     }
+    clipped_samples_ += clipped;
   }
 
   Rate rate_;

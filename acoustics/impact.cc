@@ -68,6 +68,10 @@ void ImpactSound::Add(const Knock& knock) {
 }
 
 void ImpactSound::Render(std::span<float> pressure_Pa) {
+  if (silent()) {
+    next_sample_ += static_cast<std::int64_t>(pressure_Pa.size());
+    return;
+  }
   for (float& sample : pressure_Pa) {
     const TrueTime t = SampleTime(next_sample_++, rate_);
     if (!silent()) sample += static_cast<float>(RenderSample(t));

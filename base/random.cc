@@ -2,6 +2,7 @@
 
 #include <Random123/philox.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -39,6 +40,16 @@ RandomStream::RandomStream(std::uint64_t seed, std::string_view channel, std::ui
 
 std::array<std::uint64_t, 4> RandomStream::Bits(std::uint64_t sample, std::uint64_t slot) const {
   return Encrypt({sample, slot, run_, 0}, key_);
+}
+
+void RandomStream::FillBits(std::uint64_t sample, std::uint64_t slot, std::span<std::uint64_t> words) const {
+  for (; words.size() >= 4; words = words.subspan(4)) {
+    const auto bits = Encrypt({sample, slot++, run_, 0}, key_);
+    words[0] = bits[0], words[1] = bits[1], words[2] = bits[2], words[3] = bits[3];
+  }
+  if (words.empty()) return;
+  const auto last = Encrypt({sample, slot, run_, 0}, key_);
+  std::copy_n(last.begin(), words.size(), words.begin());
 }
 
 std::array<double, 4> RandomStream::Uniforms(std::uint64_t sample, std::uint64_t slot) const {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 #include "base/normal_quantile.h"
@@ -24,6 +25,8 @@ class RandomStream {
   RandomStream(std::uint64_t seed, std::string_view channel, std::uint64_t run);
 
   std::array<std::uint64_t, 4> Bits(std::uint64_t sample, std::uint64_t slot) const;
+  /// The words of `slot` and the slots after it, one after the other.
+  void FillBits(std::uint64_t sample, std::uint64_t slot, std::span<std::uint64_t> words) const;
   /// Uniform on the open interval (0, 1): the centres of 2^52 equal cells.
   std::array<double, 4> Uniforms(std::uint64_t sample, std::uint64_t slot) const;
   /// Standard normal by Box and Muller (Ann. Math. Stat. 29, 610, 1958); |x| <= sqrt(106 ln 2) = 8.57.

@@ -35,6 +35,15 @@ TEST(HashName, GivesThePublishedFnv1aVectors) {
   EXPECT_EQ(HashName("foobar"), 0x85944171f73967e8);
 }
 
+TEST(RandomStream, FillsWithTheWordsOfOneSlotAfterTheOther) {
+  const RandomStream stream(42, "imu0", 7);
+  for (const std::size_t count : {0, 1, 4, 7, 12}) {
+    std::vector<std::uint64_t> words(count);
+    stream.FillBits(5, 3, words);
+    for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(words[i], stream.Bits(5, 3 + i / 4)[i % 4]);
+  }
+}
+
 TEST(RandomStream, IsPhiloxUnderSeedAndNameAtSampleSlotAndRun) {
   const RandomStream stream(42, "foobar", 7);
   EXPECT_EQ(stream.Bits(5, 3), Philox4x64({5, 3, 7, 0}, {42, 0x85944171f73967e8}));
