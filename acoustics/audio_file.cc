@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "base/check.h"
 
@@ -82,15 +84,17 @@ struct SndfileCloser {
 using SndfilePtr = std::unique_ptr<SNDFILE, SndfileCloser>;
 
 std::int64_t CalcDataBytes(const AudioFormat& format, std::int64_t frames) {
-  return frames * format.bits / 8;
+  return frames * (format.container == AudioContainer::kFloatWav ? 32 : format.bits) / 8;
 }
 
 bool NeedsRf64(const AudioFormat& format, std::int64_t frames) {
-  return format.container == AudioContainer::kWav && CalcDataBytes(format, frames) > kLargestWav_bytes;
+  return format.container != AudioContainer::kFlac && CalcDataBytes(format, frames) > kLargestWav_bytes;
 }
 
 int SndfileFormat(const AudioFormat& format, bool rf64) {
-  const int subtype = format.bits == 16 ? SF_FORMAT_PCM_16 : SF_FORMAT_PCM_24;
+  const int subtype = format.container == AudioContainer::kFloatWav ? SF_FORMAT_FLOAT
+                      : format.bits == 16                           ? SF_FORMAT_PCM_16
+                                                                    : SF_FORMAT_PCM_24;
   if (format.container == AudioContainer::kFlac) return SF_FORMAT_FLAC | subtype;
   return (rf64 ? SF_FORMAT_RF64 : SF_FORMAT_WAV) | subtype;
 }
@@ -111,7 +115,10 @@ void RequireFormat(const AudioFormat& format) {
 /// libsndfile left-justifies: a count sits in the upper bits of its int.
 std::int32_t PaddingFactor(std::int64_t bits) { return std::int32_t{1} << (32 - bits); }
 
-using Chunk = std::array<std::int32_t, 4096>;
+/// Of a count in a float WAV: 2^(1 - bits), by which single precision multiplies exactly.
+float PartOfFullScale(std::int64_t bits) { return std::ldexp(1.0F, static_cast<int>(1 - bits)); }
+
+constexpr std::size_t kChunk = 4096;
 
 }  // namespace
 
@@ -129,19 +136,20 @@ class AudioWriter::Impl {
     SF_VIRTUAL_IO callbacks = File::Callbacks();
     sndfile_.reset(sf_open_virtual(&callbacks, SFM_WRITE, &info, file_.get()));
     RequireWritten(sndfile_ != nullptr);
+    sf_command(sndfile_.get(), SFC_SET_ADD_PEAK_CHUNK, nullptr, SF_FALSE);  // it would hold the time of day
   }
 
   void Write(std::span<const std::int32_t> counts) {
-    RequireRoom(static_cast<std::int64_t>(counts.size()));
-    while (!counts.empty()) {
-      const auto part = counts.first(std::min(counts.size(), chunk_.size()));
-      const std::int32_t factor = PaddingFactor(format_.bits);
-      std::transform(part.begin(), part.end(), chunk_.begin(), [=](std::int32_t c) { return c * factor; });
-      const auto n = static_cast<sf_count_t>(part.size());
-      RequireWritten(sf_writef_int(sndfile_.get(), chunk_.data(), n) == n);
-      frames_ += n;
-      counts = counts.subspan(part.size());
+    if (format_.container == AudioContainer::kFloatWav) {
+      WriteScaled(counts, PartOfFullScale(format_.bits), float_chunk_, sf_writef_float);
+    } else {
+      WriteScaled(counts, PaddingFactor(format_.bits), chunk_, sf_writef_int);
     }
+  }
+
+  void Write(std::span<const float> samples) {
+    Demand(format_.container == AudioContainer::kFloatWav, "only a float WAV holds any number");
+    WriteScaled(samples, 1.0F, float_chunk_, sf_writef_float);
   }
 
   void Close() {
@@ -152,6 +160,22 @@ class AudioWriter::Impl {
   }
 
  private:
+  /// Chunk by chunk as products with `factor`.
+  template <class Sample, class Written, class WriteFrames>
+  void WriteScaled(std::span<const Sample> samples, Written factor, std::array<Written, kChunk>& chunk,
+                   WriteFrames write_frames) {
+    RequireRoom(static_cast<std::int64_t>(samples.size()));
+    while (!samples.empty()) {
+      const auto part = samples.first(std::min(samples.size(), kChunk));
+      std::transform(part.begin(), part.end(), chunk.begin(),
+                     [factor](Sample x) { return static_cast<Written>(x) * factor; });
+      const auto n = static_cast<sf_count_t>(part.size());
+      RequireWritten(write_frames(sndfile_.get(), chunk.data(), n) == n);
+      frames_ += n;
+      samples = samples.subspan(part.size());
+    }
+  }
+
   [[noreturn]] void ThrowSystemError(int error) const {
     throw std::system_error(error, std::generic_category(), "cannot write '" + path_.string() + "'");
   }
@@ -174,7 +198,8 @@ class AudioWriter::Impl {
   std::unique_ptr<File> file_;  // outlives sndfile_, which writes to it until it is closed
   SndfilePtr sndfile_;
   std::int64_t frames_ = 0;
-  Chunk chunk_{};
+  std::array<std::int32_t, kChunk> chunk_{};
+  std::array<float, kChunk> float_chunk_{};
 };
 
 AudioWriter::AudioWriter(const std::filesystem::path& path, const AudioFormat& format,
@@ -184,18 +209,21 @@ AudioWriter::~AudioWriter() = default;
 AudioWriter::AudioWriter(AudioWriter&&) noexcept = default;
 
 void AudioWriter::Write(std::span<const std::int32_t> counts) { impl_->Write(counts); }
+void AudioWriter::Write(std::span<const float> samples) { impl_->Write(samples); }
 void AudioWriter::Close() { impl_->Close(); }
 
 class AudioReader::Impl {
  public:
-  explicit Impl(const std::filesystem::path& path) : path_(path), file_(path, O_RDONLY) {
+  Impl(const std::filesystem::path& path, std::int64_t float_bits) : path_(path), file_(path, O_RDONLY) {
     if (!file_.open()) Fail(std::generic_category().message(errno));
     SF_INFO info{};
     SF_VIRTUAL_IO callbacks = File::Callbacks();
     sndfile_.reset(sf_open_virtual(&callbacks, SFM_READ, &info, &file_));
     if (!sndfile_) Fail(std::string("not a readable audio file (") + sf_strerror(nullptr) + ")");
     if (info.channels != 1) Fail(std::to_string(info.channels) + " channels; one is expected");
-    format_ = {Container(info.format), info.samplerate, Bits(info.format)};
+    const AudioContainer container = Container(info.format);
+    const bool is_float = container == AudioContainer::kFloatWav;
+    format_ = {container, info.samplerate, is_float ? float_bits : Bits(info.format)};
     frames_ = info.frames;
   }
 
@@ -204,13 +232,13 @@ class AudioReader::Impl {
 
   std::size_t Read(std::span<std::int32_t> counts) {
     const auto wanted = std::min(static_cast<sf_count_t>(counts.size()), frames_ - position_);
-    const sf_count_t got = sf_readf_int(sndfile_.get(), counts.data(), wanted);
-    if (got != wanted)
-      Fail("ends at frame " + std::to_string(position_ + got) + " of " + std::to_string(frames_));
-    position_ += got;
-    const std::int32_t factor = PaddingFactor(format_.bits);
-    for (std::int32_t& c : counts.first(static_cast<std::size_t>(got))) c /= factor;
-    return static_cast<std::size_t>(got);
+    const auto part = counts.first(static_cast<std::size_t>(wanted));
+    const std::size_t got =
+        format_.container == AudioContainer::kFloatWav ? ReadFloats(part) : ReadInts(part);
+    position_ += static_cast<sf_count_t>(got);
+    if (got != part.size())
+      Fail("ends at frame " + std::to_string(position_) + " of " + std::to_string(frames_));
+    return got;
   }
 
  private:
@@ -218,12 +246,37 @@ class AudioReader::Impl {
     throw InputError("'" + path_.string() + "': " + problem);
   }
 
+  std::size_t ReadInts(std::span<std::int32_t> counts) {
+    const auto wanted = static_cast<sf_count_t>(counts.size());
+    const auto got = static_cast<std::size_t>(sf_readf_int(sndfile_.get(), counts.data(), wanted));
+    const std::int32_t factor = PaddingFactor(format_.bits);
+    for (std::int32_t& c : counts.first(got)) c /= factor;
+    return got;
+  }
+
+  std::size_t ReadFloats(std::span<std::int32_t> counts) {
+    float_chunk_.resize(counts.size());
+    const auto wanted = static_cast<sf_count_t>(counts.size());
+    const auto got = static_cast<std::size_t>(sf_readf_float(sndfile_.get(), float_chunk_.data(), wanted));
+    const float part = PartOfFullScale(format_.bits);
+    for (std::size_t i = 0; i < got; ++i) {
+      const float count = float_chunk_[i] / part;
+      if (!(std::abs(count) <= 1 / part) || count != std::nearbyint(count)) {
+        Fail("frame " + std::to_string(position_ + static_cast<sf_count_t>(i)) + " is no count of " +
+             std::to_string(format_.bits) + " bits");
+      }
+      counts[i] = static_cast<std::int32_t>(count);
+    }
+    return got;
+  }
+
   AudioContainer Container(int format) const {
+    const bool is_float = (format & SF_FORMAT_SUBMASK) == SF_FORMAT_FLOAT;
     switch (format & SF_FORMAT_TYPEMASK) {
       case SF_FORMAT_WAV:
       case SF_FORMAT_WAVEX:
       case SF_FORMAT_RF64:
-        return AudioContainer::kWav;
+        return is_float ? AudioContainer::kFloatWav : AudioContainer::kWav;
       case SF_FORMAT_FLAC:
         return AudioContainer::kFlac;
       default:
@@ -235,7 +288,7 @@ class AudioReader::Impl {
     const int subtype = format & SF_FORMAT_SUBMASK;
     if (subtype == SF_FORMAT_PCM_16) return 16;
     if (subtype == SF_FORMAT_PCM_24) return 24;
-    Fail("the samples are not whole numbers of 16 or 24 bits");
+    Fail("the samples are neither whole numbers of 16 or 24 bits nor floats of 32");
   }
 
   std::filesystem::path path_;
@@ -244,9 +297,11 @@ class AudioReader::Impl {
   AudioFormat format_;
   sf_count_t frames_ = 0;
   sf_count_t position_ = 0;
+  std::vector<float> float_chunk_;
 };
 
-AudioReader::AudioReader(const std::filesystem::path& path) : impl_(std::make_unique<Impl>(path)) {}
+AudioReader::AudioReader(const std::filesystem::path& path, std::int64_t float_bits)
+    : impl_(std::make_unique<Impl>(path, float_bits)) {}
 AudioReader::~AudioReader() = default;
 AudioReader::AudioReader(AudioReader&&) noexcept = default;
 

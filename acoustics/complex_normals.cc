@@ -36,13 +36,13 @@ inline float ComplexNormals::Exponential(std::uint64_t word) const {
          mantissa_logs_[(word >> kIndexBits) % kCells];
 }
 
-void ComplexNormals::Draw(const RandomStream& random, std::uint64_t sample, std::span<float> exponentials,
-                          std::span<std::complex<float>> phasors) const {
+void ComplexNormals::Draw(const RandomStream& random, std::uint64_t sample, std::uint64_t first_slot,
+                          std::span<float> exponentials, std::span<std::complex<float>> phasors) const {
   Demand(exponentials.size() == phasors.size(), "one phase per modulus");
   std::array<std::uint64_t, 256> words;
   for (std::size_t begin = 0; begin < phasors.size(); begin += words.size()) {
     const std::size_t count = std::min(words.size(), phasors.size() - begin);
-    random.FillBits(sample, begin / 4, std::span(words).first(count));
+    random.FillBits(sample, first_slot + begin / 4, std::span(words).first(count));
     for (std::size_t i = 0; i < count; ++i) exponentials[begin + i] = Exponential(words[i]);
     for (std::size_t i = 0; i < count; ++i) phasors[begin + i] = phasors_[words[i] % kCells];
   }

@@ -19,9 +19,10 @@ class ComplexNormals {
  public:
   ComplexNormals();
 
-  /// E and e^(i phi) of numbers k = 0, 1, ... of sample `sample`; word k is lane k % 4 of slot k / 4.
-  void Draw(const RandomStream& random, std::uint64_t sample, std::span<float> exponentials,
-            std::span<std::complex<float>> phasors) const;
+  /// E and e^(i phi) of numbers k = 0, 1, ... of sample `sample`; word k is lane k % 4 of slot
+  /// first_slot + k / 4.
+  void Draw(const RandomStream& random, std::uint64_t sample, std::uint64_t first_slot,
+            std::span<float> exponentials, std::span<std::complex<float>> phasors) const;
 
  private:
   float Exponential(std::uint64_t word) const;

@@ -2,11 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "acoustics/gaussian_frames.h"
 #include "acoustics/listener_spectrum.h"
+#include "acoustics/stem_frames.h"
 #include "acoustics/tones.h"
+#include "base/check.h"
+#include "base/number.h"
 
 namespace piperun::acoustics {
 namespace {
@@ -34,6 +40,31 @@ const HydrophoneParams& Checked(const HydrophoneParams& params) {
   return params;
 }
 
+void RequireBand(double f_low_Hz, double f_high_Hz, double rate_Hz) {
+  if (f_low_Hz > 0 && f_low_Hz < f_high_Hz && f_high_Hz <= 0.5 * rate_Hz) return;
+  throw InputError("the band " + FormatNumber(f_low_Hz) + " to " + FormatNumber(f_high_Hz) +
+                       " Hz is not allowed; it must rise from above 0 to at most half the rate, " +
+                       FormatNumber(0.5 * rate_Hz) + " Hz",
+                   "band_Hz");
+}
+
+/// Of a spectrum that is constant over each bin.
+double IntegrateBand(std::span<const float> psd, double bin_width_Hz, double f_low_Hz, double f_high_Hz) {
+  double sum = 0;
+  for (std::size_t k = 1; k < psd.size(); ++k) {
+    const double begin_Hz = (static_cast<double>(k) - 0.5) * bin_width_Hz, end_Hz = begin_Hz + bin_width_Hz;
+    const double width_Hz = std::min(end_Hz, f_high_Hz) - std::max(begin_Hz, f_low_Hz);
+    if (width_Hz > 0) sum += width_Hz * static_cast<double>(psd[k]);
+  }
+  return sum;
+}
+
+std::vector<std::string> ListGaussianStems(const ListenerSpectrum& spectrum) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < spectrum.stems(); ++i) names.push_back(spectrum.StemName(i));
+  return names;
+}
+
 }  // namespace
 
 class Hydrophone::Impl {
@@ -48,8 +79,17 @@ class Hydrophone::Impl {
                  random),
         tones_(scene, rate_, params.high_pass_Hz, frames_.hop()),
         faults_(params.faults, rate_, random),
+        converter_noise_(CalcConverterNoisePsd(params)),
         psd_(frames_.bins()),
-        mixed_(frames_.hop()) {}
+        mixed_(frames_.hop()),
+        added_(frames_.hop()) {
+    if (!params.stems) return;
+    stem_names_ = ListGaussianStems(spectrum_);
+    stems_.emplace(2 * frames_.hop(), frames_.bin_width_Hz(), random, stem_names_);
+    stem_names_.insert(stem_names_.end(), {"knocks", "tones"});
+    stems_Pa_.resize(stem_names_.size());
+    for (std::vector<float>& stem : stems_Pa_) stem.reserve(static_cast<std::size_t>(params.block_samples));
+  }
 
   Rate rate() const { return rate_; }
   std::int64_t hop_samples() const { return static_cast<std::int64_t>(frames_.hop()); }
@@ -58,7 +98,11 @@ class Hydrophone::Impl {
 
   void Add(const Knock& knock) { impacts_.Add(knock); }
 
+  const std::vector<std::string>& stem_names() const { return stem_names_; }
+  std::span<const float> stem_Pa(std::size_t stem) const { return stems_Pa_[stem]; }
+
   void Render(const ListenerAt& listener, std::span<std::int32_t> counts) {
+    for (std::vector<float>& stem : stems_Pa_) stem.clear();
     if (next_frame_ == 0) AdvanceFrame(listener);  // what frame 0 completes lies before sample 0
     while (!counts.empty()) {
       if (ready_.empty()) ready_ = AdvanceFrame(listener);
@@ -66,7 +110,21 @@ class Hydrophone::Impl {
       Quantise(Mix(ready_.first(n)), counts.first(n));
       faults_.Drop(counts.first(n));
       counts = counts.subspan(n);
+      if (stems_) KeepStems(n);
       ready_ = ready_.subspan(n);
+    }
+  }
+
+  void CalcBandPower(const ListenerState& listener, double f_low_Hz, double f_high_Hz,
+                     std::span<double> band_Pa2) {
+    RequireBand(f_low_Hz, f_high_Hz, rate_.Hz());
+    Demand(band_Pa2.size() == spectrum_.sources() + 1, "a number per source and one of the rest");
+    std::fill(band_Pa2.begin(), band_Pa2.end(), 0.0);
+    band_Pa2.back() = converter_noise_ * (f_high_Hz - f_low_Hz);
+    for (std::size_t i = 0; i < spectrum_.stems(); ++i) {
+      spectrum_.CalcStem(i, listener, psd_);
+      band_Pa2[std::min(i, spectrum_.sources())] +=
+          IntegrateBand(psd_, frames_.bin_width_Hz(), f_low_Hz, f_high_Hz);
     }
   }
 
@@ -80,16 +138,52 @@ class Hydrophone::Impl {
       tones_.Advance({});
       std::fill(psd_.begin(), psd_.end(), 0.F);
     }
-    return frames_.Advance(next_frame_++, psd_);
+    const std::span<const float> hop = frames_.Advance(next_frame_, psd_);
+    if (stems_) AdvanceStems(state);
+    ++next_frame_;
+    return hop;
+  }
+
+  void AdvanceStems(const ListenerState& state) {
+    for (std::size_t i = 0; i < stems_->stems(); ++i) {
+      if (IsFinite(state)) {
+        spectrum_.CalcStem(i, state, stems_->psd(i));
+      } else {
+        std::ranges::fill(stems_->psd(i), 0.F);
+      }
+    }
+    stems_->Advance(next_frame_, frames_.spectrum());
+  }
+
+  /// Of the next n samples that are ready.
+  void KeepStems(std::size_t n) {
+    const std::size_t begin = frames_.hop() - ready_.size();
+    for (std::size_t i = 0; i < stems_->stems(); ++i) {
+      const auto part = stems_->hop(i).subspan(begin, n);
+      stems_Pa_[i].insert(stems_Pa_[i].end(), part.begin(), part.end());
+    }
   }
 
   std::span<const float> Mix(std::span<const float> pressure_Pa) {
     std::copy(pressure_Pa.begin(), pressure_Pa.end(), mixed_.begin());
     const std::span<float> mixed = std::span(mixed_).first(pressure_Pa.size());
-    impacts_.Render(mixed);
-    tones_.Render(mixed);
+    AddWaveform(impacts_, mixed, 2);
+    AddWaveform(tones_, mixed, 1);
     faults_.Amplify(mixed);
     return mixed;
+  }
+
+  /// `from_end`: where its stem stands. A sample gets one number from it: kept apart or not, the sum is the
+  /// same.
+  template <class Waveform>
+  void AddWaveform(Waveform& waveform, std::span<float> mixed, std::size_t from_end) {
+    if (!stems_) return waveform.Render(mixed);
+    const std::span<float> added = std::span(added_).first(mixed.size());
+    std::fill(added.begin(), added.end(), 0.F);
+    waveform.Render(added);
+    std::transform(mixed.begin(), mixed.end(), added.begin(), mixed.begin(), std::plus<>());
+    std::vector<float>& stem = stems_Pa_[stems_Pa_.size() - from_end];
+    stem.insert(stem.end(), added.begin(), added.end());
   }
 
   void Quantise(std::span<const float> pressure_Pa, std::span<std::int32_t> counts) {
@@ -111,8 +205,12 @@ class Hydrophone::Impl {
   ImpactSound impacts_;
   Tones tones_;
   RecordFaults faults_;
+  double converter_noise_;  // Pa^2/Hz
   std::vector<float> psd_;
-  std::vector<float> mixed_;
+  std::vector<float> mixed_, added_;
+  std::optional<StemFrames> stems_;
+  std::vector<std::string> stem_names_;
+  std::vector<std::vector<float>> stems_Pa_;  // of the last Render
   std::int64_t next_frame_ = 0;
   std::span<const float> ready_;  // completed samples not yet handed out
   std::int64_t clipped_samples_ = 0;
@@ -131,6 +229,14 @@ Duration Hydrophone::lookahead() const {
 }
 
 std::int64_t Hydrophone::dropped_samples() const { return impl_->dropped_samples(); }
+
+std::vector<std::string> Hydrophone::StemNames() const { return impl_->stem_names(); }
+std::span<const float> Hydrophone::stem_Pa(std::size_t stem) const { return impl_->stem_Pa(stem); }
+
+void Hydrophone::CalcBandPower(const ListenerState& listener, double f_low_Hz, double f_high_Hz,
+                               std::span<double> band_Pa2) {
+  impl_->CalcBandPower(listener, f_low_Hz, f_high_Hz, band_Pa2);
+}
 
 void Hydrophone::Add(const Knock& knock) { impl_->Add(knock); }
 

@@ -4,6 +4,8 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "acoustics/impact.h"
 #include "acoustics/record_faults.h"
@@ -23,6 +25,7 @@ struct HydrophoneParams : ParamsOf<HydrophoneParams> {
   double self_noise_dB_re_1uPa2_Hz = 42;  ///< at 1 kHz, flat above 100 Hz, 1/f below
   double high_pass_Hz = 10;               ///< -3 dB corner of the first-order input stage
   double face_radius_m = 0.005;           ///< of the sensitive face
+  bool stems = false;                     ///< keep what each source contributes
   RecordFaultParams faults{};
 
   /// 2^(bits-1) - 1. Codes run from minus to plus this, in the low bits of an int32.
@@ -58,6 +61,10 @@ double CalcConverterNoisePsd(const HydrophoneParams& params);
 /// record without any is the same as if they did not exist. Gain steps and drop-outs come last
 /// (acoustics/record_faults.h).
 ///
+/// Stems tell the sources apart again (acoustics/stem_frames.h): in pascals behind the input stage, before
+/// what is wrong with the record and before the converter. They add up to what the converter is given, and
+/// nothing in the record changes when they are kept.
+///
 /// Random numbers are keyed by (stream, frame, bin): the samples do not depend on the size of the blocks. Of
 /// the stream, samples are frames and slots 0 to N/8 bins; slots from ImpactSound::kFirstSlot on are the
 /// knocks'. Rendering does not allocate.
@@ -83,6 +90,19 @@ class Hydrophone {
   void Render(const ListenerAt& listener, std::span<std::int32_t> counts);
   std::int64_t clipped_samples() const;
   std::int64_t dropped_samples() const;
+
+  /// Of stems, if they are kept: source_ID per leak or sound, background_distant, background_flow (rolling,
+  /// too), background_self, knocks, tones.
+  std::vector<std::string> StemNames() const;
+  /// What a stem contributes to the samples of the last Render.
+  std::span<const float> stem_Pa(std::size_t stem) const;
+
+  /// Mean square in pascals of every localised source of the scene, in its order, and behind them of all
+  /// other noise (background, self noise, rounding; no knocks, no tones) at a listening place, over a band: a
+  /// frame's bins between its ends. `band` holds a number per source and one more. Throws InputError unless
+  /// 0 < f_low_Hz < f_high_Hz <= rate/2 with a bin between. Does not allocate.
+  void CalcBandPower(const ListenerState& listener, double f_low_Hz, double f_high_Hz,
+                     std::span<double> band_Pa2);
 
  private:
   class Impl;

@@ -31,6 +31,7 @@ void HydrophoneParams::Visit(ParamVisitor& v) {
            Range::NonNegative(), high_pass_Hz);
   v.Number({.name = "face_radius_m", .doc = "radius of the sensitive face, which averages small eddies away"},
            Range::Between(0, 0.1), face_radius_m);
+  v.Flag({.name = "stems", .doc = "keep what each source contributes, in truth/stems"}, stems);
   v.Struct({.name = "faults", .doc = "what goes wrong with its record"}, faults);
 }
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "acoustics/vector_clones.h"
+#include "base/function_clones.h"
 #include "base/check.h"
 
 namespace piperun::acoustics {
@@ -110,7 +110,7 @@ void InverseRealFft::Transform(std::span<const std::complex<float>> spectrum, st
 
 /// Z_k = A + T and Z_(M-k) = conj(A - T) with A = X_k + conj X_(M-k), T = i exp(2 pi i k/N) (X_k - conj
 /// X_(M-k)), M = N/2: the spectrum of x[2m] + i x[2m+1].
-PIPERUN_VECTOR_CLONES
+PIPERUN_CLONE_FOR("avx2")
 void InverseRealFft::Pack(std::span<const std::complex<float>> spectrum) {
   const std::size_t half = current_.size();
   const float first = spectrum.front().real(), last = spectrum.back().real();

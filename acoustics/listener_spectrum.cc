@@ -83,9 +83,9 @@ void ListenerSpectrum::Calc(const ListenerState& listener, std::span<float> psd)
 }
 
 std::string ListenerSpectrum::StemName(std::size_t stem) const {
-  constexpr const char* kOthers[] = {"distant", "flow", "self"};  // flow: rolling, too
+  constexpr const char* kOthers[] = {"background_distant", "background_flow", "background_self"};
   Demand(stem < stems(), "the spectrum has that stem");
-  return stem < leaks_.size() ? leaks_[stem].id : kOthers[stem - leaks_.size()];
+  return stem < leaks_.size() ? "source_" + leaks_[stem].id : kOthers[stem - leaks_.size()];
 }
 
 void ListenerSpectrum::CalcStem(std::size_t stem, const ListenerState& listener, std::span<float> psd) {

@@ -26,7 +26,9 @@ class ListenerSpectrum {
   /// One-sided PSD per bin into `psd` (Pa^2/Hz, `bins` values); bin 0 is silent. Does not allocate.
   void Calc(const ListenerState& listener, std::span<float> psd);
 
-  std::size_t stems() const { return leaks_.size() + 3; }
+  std::size_t sources() const { return leaks_.size(); }
+  /// The sources, and behind them distant noise, flow (eddies and rolling) and the hydrophone itself.
+  std::size_t stems() const { return sources() + 3; }
   std::string StemName(std::size_t stem) const;
   /// One of those that add up to Calc. Does not allocate.
   void CalcStem(std::size_t stem, const ListenerState& listener, std::span<float> psd);

@@ -7,7 +7,7 @@
 
 #include "acoustics/decay.h"
 #include "acoustics/phasor.h"
-#include "acoustics/vector_clones.h"
+#include "base/function_clones.h"
 
 namespace piperun::acoustics {
 namespace {
@@ -105,7 +105,7 @@ void StretchField::Set(std::size_t bin, const std::complex<double> (&forward)[kP
   if (backward_[bin] > 0) backward_bins_ = std::max(backward_bins_, end);
 }
 
-PIPERUN_VECTOR_CLONES
+PIPERUN_CLONE_FOR("avx2")
 void StretchField::Add(double x_m, std::span<const float> power_loss_1_m, std::span<float> psd) {
   const auto there_m = static_cast<float>(x_m), back_m = static_cast<float>(length_m_ - x_m);
   const int there = std::min(forward_bins_, CountAudible(power_loss_1_m, there_m));
@@ -120,7 +120,7 @@ void StretchField::Add(double x_m, std::span<const float> power_loss_1_m, std::s
   for (int k = 1; k < bins; ++k) sum[k] += power[k] > 0 ? power[k] : 0;  // below: rounding, in a node
 }
 
-PIPERUN_VECTOR_CLONES
+PIPERUN_CLONE_FOR("avx2")
 void StretchField::AddWave(const std::vector<float>& wave, float way_m, std::span<const float> power_loss_1_m,
                            int bins) {
   const float* __restrict at_end = wave.data(), * __restrict loss = power_loss_1_m.data();
@@ -129,7 +129,7 @@ void StretchField::AddWave(const std::vector<float>& wave, float way_m, std::spa
 }
 
 /// `u` in turns per bin.
-PIPERUN_VECTOR_CLONES
+PIPERUN_CLONE_FOR("avx2")
 void StretchField::AddStandingWave(double u, int bins) {
   const double step = std::floor(kStepsPerTurn * u);
   if (static_cast<int>(step) != slow_step_) MoveSlowPhase(static_cast<int>(step));
@@ -151,7 +151,7 @@ void StretchField::MoveSlowPhase(int step) {
   SumSlowPhase(static_cast<float>((step + 1) / kStepsPerTurn), re_1_, im_1_);
 }
 
-PIPERUN_VECTOR_CLONES
+PIPERUN_CLONE_FOR("avx2")
 void StretchField::SumSlowPhase(float turns, std::vector<float>& re, std::vector<float>& im) const {
   std::fill(re.begin(), re.end(), 0.F);
   std::fill(im.begin(), im.end(), 0.F);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/function_clones.h"
+
 namespace piperun {
 
 namespace {
@@ -42,6 +44,7 @@ std::array<std::uint64_t, 4> RandomStream::Bits(std::uint64_t sample, std::uint6
   return Encrypt({sample, slot, run_, 0}, key_);
 }
 
+PIPERUN_CLONE_FOR("bmi2")
 void RandomStream::FillBits(std::uint64_t sample, std::uint64_t slot, std::span<std::uint64_t> words) const {
   for (; words.size() >= 4; words = words.subspan(4)) {
     const auto bits = Encrypt({sample, slot++, run_, 0}, key_);

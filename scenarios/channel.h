@@ -63,8 +63,8 @@ class HydrophoneChannel : public Channel {
   void Hear(const sim::ContactEvent& event) override;
   Duration history() const override;
   const Measurement* Take(const sim::TruthWindow& window) override;
-  std::int64_t clipped_samples() const { return hydrophone_.clipped_samples(); }
-  std::int64_t dropped_samples() const { return hydrophone_.dropped_samples(); }
+  acoustics::Hydrophone& hydrophone() { return hydrophone_; }
+  const acoustics::Hydrophone& hydrophone() const { return hydrophone_; }
 
  private:
   RobotTime StampOf(std::int64_t sample) const;

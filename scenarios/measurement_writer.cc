@@ -130,7 +130,7 @@ class MarkerWriter : public CsvWriter {
 
 AudioDescription Describe(const acoustics::HydrophoneParams& params, const RecordOptions& options) {
   AudioDescription d;
-  d.file = "audio." + options.audio_format;
+  d.file = options.audio_format == "flac" ? "audio.flac" : "audio.wav";
   d.rate_Hz = params.rate_Hz;
   d.block_samples = params.block_samples;
   d.bits = params.bits;
@@ -141,9 +141,11 @@ AudioDescription Describe(const acoustics::HydrophoneParams& params, const Recor
 }
 
 acoustics::AudioFormat MakeFormat(const acoustics::HydrophoneParams& params, const RecordOptions& options) {
-  const bool flac = options.audio_format == "flac";
-  return {flac ? acoustics::AudioContainer::kFlac : acoustics::AudioContainer::kWav,
-          std::llround(params.rate_Hz), params.bits};
+  using acoustics::AudioContainer;
+  const AudioContainer container = options.audio_format == "flac"        ? AudioContainer::kFlac
+                                   : options.audio_format == "wav_float" ? AudioContainer::kFloatWav
+                                                                         : AudioContainer::kWav;
+  return {container, std::llround(params.rate_Hz), params.bits};
 }
 
 class AudioChannelWriter : public MeasurementWriter {

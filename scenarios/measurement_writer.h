@@ -23,7 +23,7 @@ class MeasurementWriter {
 
 struct RecordOptions {
   RobotTime start{};                 ///< stamp of audio sample 0
-  std::string audio_format = "wav";  ///< or flac
+  std::string audio_format = "wav";  ///< wav, wav_float or flac
   double longest_s = 0;              ///< the run cannot be longer: decides whether a WAV needs 64-bit sizes
 };
 

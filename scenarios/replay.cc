@@ -203,7 +203,7 @@ class AudioLog : public ChannelLog {
       : ChannelLog(channel),
         description_(LoadDescription(folder)),
         path_(folder / description_.file),
-        reader_(path_),
+        reader_(path_, description_.bits),
         counts_(static_cast<std::size_t>(description_.block_samples)) {
     const acoustics::AudioFormat& format = reader_.format();
     if (static_cast<double>(format.rate_Hz) != description_.rate_Hz || format.bits != description_.bits) {

@@ -11,6 +11,7 @@
 #include "scenarios/output_file.h"
 #include "scenarios/run_folder.h"
 #include "scenarios/seal.h"
+#include "scenarios/stem_recorder.h"
 #include "scenarios/truth_log.h"
 #include "scenarios/truth_recorder.h"
 
@@ -67,12 +68,17 @@ std::vector<std::unique_ptr<MeasurementWriter>> OpenWriters(const Scenario& scen
   return writers;
 }
 
-const acoustics::HydrophoneParams* FindHydrophone(const Scenario& scenario) {
-  for (const SensorEntry& entry : scenario.sensors) {
-    if (const auto* params = dynamic_cast<const acoustics::HydrophoneParams*>(&entry.kind.params()))
-      return params;
+/// By channel; null: no stems are kept.
+std::vector<std::unique_ptr<StemRecorder>> OpenStems(const Scenario& scenario, const Assembly& assembly,
+                                                     const RunFolder& folder) {
+  std::vector<std::unique_ptr<StemRecorder>> stems(assembly.channels.size());
+  for (std::size_t i = 0; i < stems.size(); ++i) {
+    const auto* channel = dynamic_cast<const HydrophoneChannel*>(assembly.channels[i].get());
+    if (!channel || channel->hydrophone().StemNames().empty()) continue;
+    stems[i] = std::make_unique<StemRecorder>(channel->hydrophone(), scenario.mission.time_limit_s,
+                                              folder.Folder("truth/stems/" + assembly.channel_names[i]));
   }
-  return nullptr;
+  return stems;
 }
 
 /// Truth to measurements to files and filters: the loop.
@@ -86,6 +92,7 @@ class RunLoop {
         truth_(assembly, Rate(scenario.output.truth_rate_Hz.value_or(assembly.motion->rate().Hz())),
                folder.Folder("truth"), folder.Folder("mav0/state_groundtruth_estimate0")),
         writers_(OpenWriters(scenario, assembly, folder)),
+        stems_(OpenStems(scenario, assembly, folder)),
         input_(MakeEstimatorInput(scenario, assembly)),
         bank_(input_, folder.staging() / "estimates", [this](RobotTime t) { return TruthAt(t); }),
         truth_file_(folder.staging() / "truth" / "ball.csv") {
@@ -117,12 +124,13 @@ class RunLoop {
     RunResult result;
     result.status = Name(assembly_.motion->status());
     result.duration_s = Seconds(assembly_.motion->state().time);
-    result.leaks = truth_.Close(FindHydrophone(scenario_));
+    result.leaks = truth_.Close();
     result.contacts = truth_.contacts();
     for (std::size_t i = 0; i < writers_.size(); ++i) {
       const auto* hydrophone = dynamic_cast<const HydrophoneChannel*>(assembly_.channels[i].get());
-      if (hydrophone) writers_[i]->CountDropped(hydrophone->dropped_samples());
+      if (hydrophone) writers_[i]->CountDropped(hydrophone->hydrophone().dropped_samples());
       writers_[i]->Close();
+      if (stems_[i]) stems_[i]->Close();
     }
     result.estimators = bank_.Finish(result.leaks, scenario_.score.match_radius_m,
                                      [this] { return OpenTruth(truth_file_, assembly_.clock); });
@@ -181,6 +189,7 @@ class RunLoop {
       *first = NextDue(i);
       if (!measurement) continue;
       writers_[i]->Write(*measurement);
+      if (stems_[i]) stems_[i]->Write(dynamic_cast<HydrophoneChannel&>(*assembly_.channels[i]).hydrophone());
       bank_.Ingest(*measurement);
     }
   }
@@ -222,6 +231,7 @@ class RunLoop {
   sim::TruthWindow window_;
   TruthRecorder truth_;
   std::vector<std::unique_ptr<MeasurementWriter>> writers_;
+  std::vector<std::unique_ptr<StemRecorder>> stems_;
   EstimatorInput input_;
   EstimatorBank bank_;
   std::filesystem::path truth_file_;

@@ -247,12 +247,14 @@ void ScoreParams::Visit(ParamVisitor& v) {
 }
 
 void OutputParams::Visit(ParamVisitor& v) {
-  static constexpr std::array<std::string_view, 2> kFormats{"wav", "flac"};
+  static constexpr std::array<std::string_view, 3> kFormats{"wav", "wav_float", "flac"};
   v.NumberOr({"truth_rate_Hz", "Rows per second of truth/ball.csv."}, {.min = 0.1, .max = 1e5}, "physics",
              truth_rate_Hz);
   v.Number({"track_rate_Hz", "Rows per second of every estimated track, where it is scored."},
            {.min = 0.1, .max = 1e4}, track_rate_Hz);
-  v.Choice({"audio_format", "Container of the hydrophone record."}, kFormats, audio_format);
+  v.Choice(
+      {"audio_format", "Container of the hydrophone record; all hold the converter's counts bit for bit."},
+      kFormats, audio_format);
 }
 
 void ExpectEntry::Visit(ParamVisitor& v) {

@@ -14,28 +14,10 @@ constexpr std::string_view kGroundtruthHeader =
     "v_RS_R_x [m s^-1],v_RS_R_y [m s^-1],v_RS_R_z [m s^-1],b_w_RS_S_x [rad s^-1],b_w_RS_S_y [rad s^-1],"
     "b_w_RS_S_z [rad s^-1],b_a_RS_S_x [m s^-2],b_a_RS_S_y [m s^-2],b_a_RS_S_z [m s^-2]\n";
 constexpr std::string_view kLeaksHeader = "id,pipe,s_m,chainage_m,x_m,y_m,z_m,flow_m3_s,t_cpa_ns,snr_dB\n";
-
+constexpr std::string_view kLabelsHeader = "id,begin_ns,t_cpa_ns,end_ns,snr_dB\n";
 constexpr std::string_view kFeaturesHeader = "id,kind,pipe,s_m,chainage_m\n";
 
 std::int64_t Nanoseconds(TrueTime t) { return t.time_since_epoch().count(); }
-
-/// When the ball passed the leak, to the nanosecond: from the closest step on at the speed it had there.
-/// Nothing when it turned back or stopped short.
-std::optional<TrueTime> FindPassage(const sim::TruthState& closest, double leak_s_m, double step_s) {
-  const double speed = closest.v_WB_W.norm();
-  const double ahead_m = (closest.reversed ? -1 : 1) * (leak_s_m - closest.s_m);
-  if (std::abs(ahead_m) > speed * step_s) return std::nullopt;
-  return closest.time + (speed > 0 ? FromSeconds(ahead_m / speed) : Duration(0));
-}
-
-/// Leak over everything else between 1 and 4 kHz, or as much of that band as the hydrophone hears.
-std::optional<double> CalcSnr_dB(const Assembly& assembly, std::size_t leak,
-                                 const acoustics::HydrophoneParams* hydrophone, const sim::TruthState& ball) {
-  constexpr double kLow_Hz = 1000, kHigh_Hz = 4000;
-  if (!hydrophone || hydrophone->rate_Hz <= 2 * kLow_Hz) return std::nullopt;
-  return acoustics::CalcLeakSnr_dB(assembly.scene, leak, *hydrophone, CalcListener(ball, *assembly.network()),
-                                   kLow_Hz, std::min(kHigh_Hz, hydrophone->rate_Hz / 2));
-}
 
 /// True when the way taken is the planned one as far as it goes.
 bool FollowsPlan(const sim::Way& way, const Route& plan) {
@@ -49,6 +31,16 @@ bool FollowsPlan(const sim::Way& way, const Route& plan) {
 void WriteLeak(OutputFile& file, const TrueLeak& leak) {
   CsvRow(file) << std::string_view(leak.id) << std::string_view(leak.pipe) << leak.s_m << leak.chainage_m
                << leak.p_W << leak.flow_m3_s << leak.t_cpa_ns << leak.snr_dB << kEndOfRow;
+}
+
+void WriteLabel(OutputFile& file, const TrueLeak& leak, const Passage& passage) {
+  std::optional<std::int64_t> begin_ns, end_ns;
+  if (passage.heard) {
+    begin_ns = Nanoseconds(passage.heard->begin);
+    end_ns = Nanoseconds(passage.heard->end);
+  }
+  CsvRow(file) << std::string_view(leak.id) << begin_ns << leak.t_cpa_ns << end_ns << leak.snr_dB
+               << kEndOfRow;
 }
 
 /// Of the wall features, by index.
@@ -68,7 +60,7 @@ TruthRecorder::TruthRecorder(const Assembly& assembly, Rate truth_rate,
       truth_folder_(truth_folder),
       ball_(truth_folder / "ball.csv"),
       groundtruth_(groundtruth_folder / "data.csv"),
-      approaches_(assembly.pipeline ? assembly.pipeline->leaks.size() : 0) {
+      passages_(assembly) {
   ball_.Append(kBallHeader);
   groundtruth_.Append(kGroundtruthHeader);
   if (assembly.motion->way())
@@ -80,7 +72,7 @@ std::optional<ContactSummary> TruthRecorder::contacts() const {
 }
 
 void TruthRecorder::Watch(const sim::TruthWindow& window) {
-  for (std::size_t i = 0; i < approaches_.size(); ++i) UpdateApproach(i, window);
+  passages_.Watch(window.at(window.last()));
   if (contacts_) contacts_->WriteUntil(window.latest_time());
 }
 
@@ -105,15 +97,6 @@ void TruthRecorder::WriteRow(const sim::TruthState& state) {
   CsvRow(groundtruth_) << Nanoseconds(state.time) << X_WS.p << X_WS.q << v_WS_W
                        << (bias ? bias->gyro_rad_s : Vector3d::Zero().eval())
                        << (bias ? bias->accel_m_s2 : Vector3d::Zero().eval()) << kEndOfRow;
-}
-
-void TruthRecorder::UpdateApproach(std::size_t leak, const sim::TruthWindow& window) {
-  const sim::TruthState& state = window.at(window.last());
-  const Leak& at = assembly_.pipeline->leaks[leak];
-  if (state.pipe != at.pipe) return;
-  auto& closest = approaches_[leak];
-  if (closest && std::abs(state.s_m - at.s_m) >= std::abs(closest->s_m - at.s_m)) return;
-  closest = state;
 }
 
 /// Where a place lies on the way taken, or on what was still to come of the planned one; in the drawing, and
@@ -143,30 +126,32 @@ void TruthRecorder::WriteFeatures() const {
   file.Close();
 }
 
-std::vector<TrueLeak> TruthRecorder::Close(const acoustics::HydrophoneParams* hydrophone) {
+std::vector<TrueLeak> TruthRecorder::Close() {
   ball_.Close();
   groundtruth_.Close();
   if (!assembly_.wall_features.empty()) WriteFeatures();
   if (contacts_) contacts_->Close();
-  OutputFile file(truth_folder_ / "leaks.csv");
+  OutputFile file(truth_folder_ / "leaks.csv"), labels(truth_folder_ / "labels.csv");
   file.Append(kLeaksHeader);
+  labels.Append(kLabelsHeader);
   std::vector<TrueLeak> leaks;
-  for (std::size_t i = 0; i < approaches_.size(); ++i) {
+  const std::size_t count = assembly_.pipeline ? assembly_.pipeline->leaks.size() : 0;
+  for (std::size_t i = 0; i < count; ++i) {
     const Leak& at = assembly_.pipeline->leaks[i];
     const Place place = FindPlace(at.pipe, at.s_m);
     TrueLeak leak{at.id,     assembly_.network()->pipe(at.pipe).id,        at.s_m,       place.chainage_m,
                   place.p_W, assembly_.pipeline->leak_states[i].flow_m3_s, std::nullopt, std::nullopt};
-    const auto& closest = approaches_[i];
-    const double step_s = assembly_.motion->rate().Period_s();
-    const auto passage = closest && place.chainage_m ? FindPassage(*closest, at.s_m, step_s) : std::nullopt;
-    if (passage) {
-      leak.t_cpa_ns = Nanoseconds(*passage);
-      leak.snr_dB = CalcSnr_dB(assembly_, i, hydrophone, *closest);
+    const auto passage = place.chainage_m ? passages_.Find(i) : std::nullopt;
+    if (passage && passage->passed) {
+      leak.t_cpa_ns = Nanoseconds(*passage->passed);
+      leak.snr_dB = passage->snr_dB;
+      WriteLabel(labels, leak, *passage);
     }
     WriteLeak(file, leak);
     leaks.push_back(std::move(leak));
   }
   file.Close();
+  labels.Close();
   return leaks;
 }
 

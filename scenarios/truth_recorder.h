@@ -7,13 +7,14 @@
 #include "scenarios/assemble.h"
 #include "scenarios/contact_log.h"
 #include "scenarios/output_file.h"
+#include "scenarios/passage_log.h"
 #include "scenarios/score.h"
 #include "sim/truth.h"
 
 namespace piperun::scenarios {
 
-/// Writes truth/ball.csv, truth/contacts.csv and EuRoC's state_groundtruth_estimate0, and watches for the
-/// closest approach to every leak.
+/// Writes truth/ball.csv, truth/contacts.csv and EuRoC's state_groundtruth_estimate0, and what the ball
+/// passed.
 class TruthRecorder {
  public:
   TruthRecorder(const Assembly& assembly, Rate truth_rate, const std::filesystem::path& truth_folder,
@@ -27,13 +28,12 @@ class TruthRecorder {
   void Record(const sim::ContactEvent& event) { contacts_->Add(event); }
   /// Of the rows written so far; nothing: no pipes.
   std::optional<ContactSummary> contacts() const;
-  /// Completes the files, writes leaks.csv (and features.csv, where there are any) and returns what leaks.csv
-  /// says.
-  std::vector<TrueLeak> Close(const acoustics::HydrophoneParams* hydrophone);
+  /// Completes the files, writes leaks.csv, labels.csv (and features.csv, where there are any) and returns
+  /// what leaks.csv says.
+  std::vector<TrueLeak> Close();
 
  private:
   void WriteRow(const sim::TruthState& state);
-  void UpdateApproach(std::size_t leak, const sim::TruthWindow& window);
 
   struct Place {
     std::optional<double> chainage_m;
@@ -49,7 +49,7 @@ class TruthRecorder {
   OutputFile groundtruth_;
   std::optional<ContactLog> contacts_;  ///< when there are pipes
   std::int64_t next_row_ = 0;
-  std::vector<std::optional<sim::TruthState>> approaches_;  ///< closest step to each leak so far
+  PassageLog passages_;
 };
 
 }  // namespace piperun::scenarios

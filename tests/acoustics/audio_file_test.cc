@@ -62,6 +62,7 @@ void WriteInBlocks(const fs::path& path, const AudioFormat& format, std::span<co
 
 const AudioFormat kFormats[] = {{AudioContainer::kWav, 16000, 16},
                                 {AudioContainer::kWav, 96000, 24},
+                                {AudioContainer::kFloatWav, 16000, 24},
                                 {AudioContainer::kFlac, 8000, 16},
                                 {AudioContainer::kFlac, 44100, 24}};
 
@@ -135,6 +136,26 @@ TEST_F(AudioFile, AWavThatMayOutgrowFourGibibytesIsRf64) {
   EXPECT_EQ(back, counts);
 }
 
+TEST_F(AudioFile, AFloatWavHoldsPartsOfFullScaleAndNoTime) {
+  WriteInBlocks(folder_ / "a.wav", {AudioContainer::kFloatWav, 16000, 24},
+                std::vector<std::int32_t>{1 << 22, -(1 << 23), 1}, 3);
+  const std::string bytes = Bytes(folder_ / "a.wav");
+  EXPECT_EQ(bytes.find("PEAK"), std::string::npos);
+  const float expected[] = {0.5F, -1, 0x1p-23F};
+  float samples[3];
+  std::memcpy(samples, bytes.data() + bytes.size() - sizeof(samples), sizeof(samples));
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(samples[i], expected[i]);
+}
+
+TEST_F(AudioFile, RefusesFloatsThatAreNoCounts) {
+  AudioWriter writer(folder_ / "a.wav", {AudioContainer::kFloatWav, 16000, 24});
+  writer.Write(std::vector<float>{0.5F, 1e-9F});
+  writer.Close();
+  AudioReader reader(folder_ / "a.wav");
+  std::vector<std::int32_t> counts(2);
+  EXPECT_THROW(reader.Read(counts), InputError);
+}
+
 TEST_F(AudioFile, SaysThatTheDiskIsFull) {
   for (const AudioFormat& format : kFormats) {
     try {
@@ -197,7 +218,9 @@ TEST_F(AudioFile, ReaderRefusesOtherChannelsAndSampleTypes) {
   };
   EXPECT_EQ(problem(MakeWav(1, 1, 16)), "");
   EXPECT_NE(problem(MakeWav(1, 2, 16)).find("2 channels"), std::string::npos);
-  EXPECT_NE(problem(MakeWav(3, 1, 32)).find("16 or 24 bits"), std::string::npos);
+  EXPECT_EQ(problem(MakeWav(3, 1, 32)), "");
+  EXPECT_NE(problem(MakeWav(1, 1, 8)).find("16 or 24 bits"), std::string::npos);
+  EXPECT_NE(problem(MakeWav(3, 1, 64)).find("16 or 24 bits"), std::string::npos);
 }
 
 TEST_F(AudioFile, ReaderNoticesAFlacCutShort) {

@@ -43,7 +43,7 @@ class ComplexNormalsTest : public testing::Test {
  protected:
   static constexpr std::size_t kDraws = 1 << 20;
   ComplexNormalsTest() : exponentials_(kDraws), phasors_(kDraws) {
-    ComplexNormals().Draw(RandomStream(7, "noise", 3), 11, exponentials_, phasors_);
+    ComplexNormals().Draw(RandomStream(7, "noise", 3), 11, 0, exponentials_, phasors_);
   }
   std::vector<float> exponentials_;
   std::vector<std::complex<float>> phasors_;
@@ -90,7 +90,7 @@ TEST_F(ComplexNormalsTest, HaveUniformPhasesIndependentOfTheModulus) {
 TEST_F(ComplexNormalsTest, DifferFromSampleToSample) {
   std::vector<float> e(64);
   std::vector<std::complex<float>> u(64);
-  ComplexNormals().Draw(RandomStream(7, "noise", 3), 12, e, u);
+  ComplexNormals().Draw(RandomStream(7, "noise", 3), 12, 0, e, u);
   EXPECT_FALSE(std::equal(e.begin(), e.end(), exponentials_.begin()));
 }
 

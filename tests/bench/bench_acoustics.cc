@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
+#include "acoustics/audio_file.h"
 #include "acoustics/hydrophone.h"
 #include "acoustics/network_field.h"
 
@@ -100,6 +102,38 @@ BENCHMARK(RenderSecondInMain)->Unit(benchmark::kMillisecond);
 
 void RenderSecondInTown(benchmark::State& state) { RenderSecond(state, MakeTown(), Walk(20)); }
 BENCHMARK(RenderSecondInTown)->Unit(benchmark::kMillisecond);
+
+/// 60 s of the main (three leaks; distant noise, eddies, self noise and converter) into a WAV of 16 bits;
+/// with stems, those into files of their own beside it.
+void RenderMinuteIntoFiles(benchmark::State& state) {
+  const bool stems = state.range(0) != 0;
+  HydrophoneParams params;
+  params.bits = 16;
+  params.stems = stems;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "piperun_bench_acoustics";
+  std::filesystem::create_directories(folder);
+  const Hydrophone::ListenerAt listener = Walk(1);
+  std::vector<std::int32_t> block(1600);
+  for (auto _ : state) {
+    state.PauseTiming();
+    Hydrophone hydrophone(params, MakeMain(), RandomStream(1, "hydrophone0", 0));
+    state.ResumeTiming();
+    AudioWriter mix(folder / "audio.wav", {AudioContainer::kWav, 16000, 16});
+    std::vector<AudioWriter> files;
+    for (const std::string& name : hydrophone.StemNames())
+      files.emplace_back(folder / (name + ".wav"), AudioFormat{AudioContainer::kFloatWav, 16000, 24});
+    for (int i = 0; i < 600; ++i) {
+      hydrophone.Render(listener, block);
+      mix.Write(block);
+      for (std::size_t stem = 0; stem < files.size(); ++stem) files[stem].Write(hydrophone.stem_Pa(stem));
+    }
+    mix.Close();
+    for (AudioWriter& file : files) file.Close();
+  }
+  state.counters["x_real_time"] = benchmark::Counter(60, benchmark::Counter::kIsIterationInvariantRate);
+  std::filesystem::remove_all(folder);
+}
+BENCHMARK(RenderMinuteIntoFiles)->ArgName("stems")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
 /// Waves of all pipes, sounds and ways of all leaks, tables: what a run pays before it starts.
 void AssembleTown(benchmark::State& state) {
