@@ -11,7 +11,7 @@
 #include "base/water.h"
 #include "scenarios/assemble.h"
 #include "scenarios/load.h"
-#include "scenarios/physics/checks.h"
+#include "scenarios/physics/groups.h"
 
 namespace piperun::scenarios::physics {
 namespace {
@@ -53,7 +53,7 @@ double CalcSpeedRatio(const CarriedCase& c) {
                                                         : 0;
 }
 
-void CheckEllis(Checks& checks) {
+void CheckEllis(FigureChecks& checks) {
   ReproducedTable table{
       "Ball speed over water speed in a level pipe of 31.75 mm, relative density 1.2, 1.2 m/s",
       {"d/D", "v/U", "Ellis 1964"},
@@ -72,7 +72,7 @@ bool Rises(const std::vector<double>& values) {
   return std::is_sorted(values.begin(), values.end(), std::less_equal<>());
 }
 
-void CheckTrends(Checks& checks) {
+void CheckTrends(FigureChecks& checks) {
   const auto sweep = [](const std::array<double, 3>& values, double CarriedCase::*field) {
     std::vector<double> ratios;
     for (const double value : values) {
@@ -100,7 +100,7 @@ void CheckTrends(Checks& checks) {
 
 /// The reference ball in a riser: the water must reach its terminal speed where it is, between the axis (1.17
 /// U for d/D = 0.4) and the wall (1.03 U).
-void CheckRiser(Checks& checks) {
+void CheckRiser(FigureChecks& checks) {
   CarriedCase riser{0.15, 0.4, 1.1, 0, std::numbers::pi / 2, 5};
   const double terminal_m_s = 0.34;
   riser.water_speed_m_s = 0.9 * terminal_m_s / 1.17;
@@ -114,7 +114,7 @@ void CheckRiser(Checks& checks) {
 }  // namespace
 
 void CheckCarried(const ReproduceOptions&, ReproduceReport& report) {
-  Checks checks(report, "carried");
+  FigureChecks checks(report, "carried");
   CheckEllis(checks);
   CheckTrends(checks);
   CheckRiser(checks);

@@ -4,7 +4,7 @@
 
 #include "scenarios/assemble.h"
 #include "scenarios/load.h"
-#include "scenarios/physics/checks.h"
+#include "scenarios/physics/groups.h"
 
 namespace piperun::scenarios::physics {
 namespace {
@@ -55,7 +55,7 @@ Closure IntegrateAlong(const Scenario& scenario) {
 }  // namespace
 
 void CheckClosure(const ReproduceOptions& options, ReproduceReport& report) {
-  Checks checks(report, "closure");
+  FigureChecks checks(report, "closure");
   const std::string seed = "seed=" + std::to_string(options.seed);
   const Closure bend = IntegrateAlong(LoadScenario("closure", {seed}));
   checks.AtLeast("length of the run with a bend [m]", bend.length_m, 90, "scenario closure");

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scenarios/physics/checks.h"
+#include "scenarios/physics/groups.h"
 #include "scenarios/physics/reference_ball.h"
 #include "scenarios/physics/rocking.h"
 
@@ -19,7 +19,7 @@ void RunFor(BallWorld& world, int steps) {
   for (int i = 0; i < steps; ++i) world.Step();
 }
 
-void CheckIncline(Checks& checks) {
+void CheckIncline(FigureChecks& checks) {
   const double slope = 0.1;
   const Vector3d t(std::cos(slope), 0, -std::sin(slope)), up(std::sin(slope), 0, std::cos(slope));
   const PipeBench bench({Vector3d::Zero(), 50 * t});
@@ -30,7 +30,7 @@ void CheckIncline(Checks& checks) {
                   Ref::weight_N * std::sin(slope) / Ref::rolling_kg, 1e-10, "W sin(a) / (m + m_a + I/r2)");
 }
 
-void CheckSlideToRoll(Checks& checks) {
+void CheckSlideToRoll(FigureChecks& checks) {
   const PipeBench bench({Vector3d::Zero(), {50, 0, 0}});
   BallWorld world(bench.bore(), MakeReferenceBall(0.3, 0), Rate(1000),
                   bench.Start(0, {0, 0, -Ref::run_m}, {1, 0, 0}), CalcReferenceWeight);
@@ -39,7 +39,7 @@ void CheckSlideToRoll(Checks& checks) {
               Ref::inertial_kg / Ref::rolling_kg, 1e-9, "angular momentum about the contact");
 }
 
-void CheckRollingResistance(Checks& checks) {
+void CheckRollingResistance(FigureChecks& checks) {
   for (const double c_rr : {0.002, 0.02}) {
     const PipeBench bench({Vector3d::Zero(), {50, 0, 0}});
     BallWorld world(bench.bore(), MakeReferenceBall(0.5, c_rr * Ref::radius_m), Rate(1000),
@@ -53,7 +53,7 @@ void CheckRollingResistance(Checks& checks) {
   }
 }
 
-void CheckRocking(const ReproduceOptions& options, Checks& checks) {
+void CheckRocking(const ReproduceOptions& options, FigureChecks& checks) {
   const double amplitude = std::numbers::pi / 6, seconds = 100 * std::fmin(1, std::fmax(0.2, options.size));
   const Rocking rocking = RockFor(seconds, amplitude, 1000, 0);
   checks.Relative("period of rocking through +-30 degrees [s]", rocking.period_s,
@@ -90,7 +90,7 @@ double CalcSpuriousForce_m_s2(double rate_Hz, int samples) {
 }  // namespace
 
 void CheckContact(const ReproduceOptions& options, ReproduceReport& report) {
-  Checks checks(report, "contact");
+  FigureChecks checks(report, "contact");
   CheckIncline(checks);
   CheckSlideToRoll(checks);
   CheckRollingResistance(checks);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/number.h"
-#include "scenarios/physics/checks.h"
+#include "scenarios/physics/groups.h"
 #include "sim/drag.h"
 #include "sim/wall_factor.h"
 
@@ -28,7 +28,7 @@ constexpr std::array kDragTable{DragRow{10, {4.2584, 4.1347, 4.1275, 3.9676, 4.3
                                 DragRow{4e5, {0.0702, 0, 0, 0.0874, 0.0901}},
                                 DragRow{1e6, {0.1100, 0, 0, 0.1415, 0.2125}}};
 
-void CheckDragTable(Checks& checks) {
+void CheckDragTable(FigureChecks& checks) {
   for (std::size_t law = 0; law < kDragKeys.size(); ++law) {
     double largest = 0;
     for (const DragRow& row : kDragTable) {
@@ -53,7 +53,7 @@ double CalcLargestJump(sim::DragLaw law) {
   return largest;
 }
 
-void CheckJumps(Checks& checks) {
+void CheckJumps(FigureChecks& checks) {
   for (const char* key : {"clift_grace_weber", "clift_gauvin", "clift_gauvin_1970", "brown_lawler",
                           "morrison", "barati_high"}) {
     checks.AtMost(std::string(key) + ": largest jump of C_D, Re 1e-2 to 1e6",
@@ -61,7 +61,7 @@ void CheckJumps(Checks& checks) {
   }
 }
 
-void CheckWallFactors(Checks& checks) {
+void CheckWallFactors(FigureChecks& checks) {
   // at high Re: Newton, Munroe, Di Felice, Kehlenbeck & Di Felice
   struct Row {
     double diameter_ratio;
@@ -87,7 +87,7 @@ void CheckWallFactors(Checks& checks) {
 }  // namespace
 
 void CheckDrag(const ReproduceOptions&, ReproduceReport& report) {
-  Checks checks(report, "drag");
+  FigureChecks checks(report, "drag");
   CheckDragTable(checks);
   CheckJumps(checks);
   CheckWallFactors(checks);

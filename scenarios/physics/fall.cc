@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/number.h"
-#include "scenarios/physics/checks.h"
+#include "scenarios/physics/groups.h"
 #include "scenarios/physics/reference_ball.h"
 #include "sim/fluid_load.h"
 
@@ -62,7 +62,7 @@ double SolveFreeSpeed_m_s() {
   return low;
 }
 
-void CheckTerminalSpeeds(Checks& checks) {
+void CheckTerminalSpeeds(FigureChecks& checks) {
   const double free_m_s = SolveFreeSpeed_m_s();
   const sim::Reynolds re(free_m_s * 2 * Ref::radius_m / 1e-6);
   const double tube_m_s = free_m_s * sim::CalcWallFactor(sim::WallFactorLaw::kKehlenbeckDiFelice, 0.4, re);
@@ -91,7 +91,7 @@ double CalcRollingDrag(double reynolds) {
   return resistance_N / (500 * std::numbers::pi * r * r * v * v);
 }
 
-void CheckRollingDrag(Checks& checks) {
+void CheckRollingDrag(FigureChecks& checks) {
   for (const double reynolds : {1e2, 1e3, 1e4}) {
     const double l = std::log10(reynolds);
     checks.Relative("C_D of a ball rolling down a plane in still water, Re " + FormatDigits(reynolds, 3),
@@ -130,7 +130,7 @@ double CalcSwirlError_m(double rate_Hz) {
 }  // namespace
 
 void CheckFall(const ReproduceOptions&, ReproduceReport& report) {
-  Checks checks(report, "fall and swirl");
+  FigureChecks checks(report, "fall and swirl");
   CheckTerminalSpeeds(checks);
   CheckRollingDrag(checks);
   checks.AtMost("a ball like water leaves its streamline in a swirl, per turn [m]", CalcSwirlError_m(1000),

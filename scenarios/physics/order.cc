@@ -3,7 +3,7 @@
 #include <cmath>
 #include <functional>
 
-#include "scenarios/physics/checks.h"
+#include "scenarios/physics/groups.h"
 #include "scenarios/physics/reference_ball.h"
 #include "scenarios/physics/rocking.h"
 
@@ -44,7 +44,7 @@ double RollAndRock_rad(double rate_Hz) {
 }  // namespace
 
 void CheckOrder(const ReproduceOptions&, ReproduceReport& report) {
-  Checks checks(report, "order of the step");
+  FigureChecks checks(report, "order of the step");
   checks.AtLeast("rolling along a straight, with drag", CalcOrder(50, RollStraight_m), 1.9, "leapfrog: 2");
   checks.AtLeast("rocking, period",
                  CalcOrder(100, [](double rate_Hz) { return RockFor(10, 0.5, rate_Hz, 0).period_s; }), 1.9,

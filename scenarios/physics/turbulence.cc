@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "base/number.h"
-#include "scenarios/physics/checks.h"
+#include "scenarios/physics/groups.h"
 #include "sim/turbulence_statistics.h"
 
 namespace piperun::scenarios::physics {
@@ -19,7 +19,7 @@ sim::TurbulentPlace MakePlace() {
   return place;
 }
 
-void CheckStatistics(const ReproduceOptions& options, Checks& checks) {
+void CheckStatistics(const ReproduceOptions& options, FigureChecks& checks) {
   const auto blocks = std::max<std::int64_t>(2000, std::llround(40000 * options.size));
   // the mean of three axes; four standard deviations where the record is shorter than asked for
   const double wide = std::sqrt(std::fmax(1, 40000.0 / static_cast<double>(blocks)));
@@ -41,7 +41,7 @@ void CheckStatistics(const ReproduceOptions& options, Checks& checks) {
   }
 }
 
-void CheckTracers(const ReproduceOptions& options, Checks& checks) {
+void CheckTracers(const ReproduceOptions& options, FigureChecks& checks) {
   constexpr double kChiSquare9AtOnePercent = 21.666;
   const auto tracers = std::max<std::int64_t>(5000, std::llround(30000 * options.size));
   const sim::TurbulenceCoefficients c = sim::CalcTurbulenceCoefficients({}, 0, 1);
@@ -59,7 +59,7 @@ void CheckTracers(const ReproduceOptions& options, Checks& checks) {
 }  // namespace
 
 void CheckTurbulence(const ReproduceOptions& options, ReproduceReport& report) {
-  Checks checks(report, "turbulence");
+  FigureChecks checks(report, "turbulence");
   CheckStatistics(options, checks);
   CheckTracers(options, checks);
 }

@@ -7,8 +7,8 @@
 
 #include "base/number.h"
 #include "estimator/allan_fit.h"
+#include "scenarios/figure_checks.h"
 #include "scenarios/parallel.h"
-#include "scenarios/physics/checks.h"
 #include "sim/imu_error.h"
 
 namespace piperun::scenarios {
@@ -147,8 +147,8 @@ ReproduceReport Study(const ReproduceOptions& options) {
     if (options.progress) options.progress(fraction, "records");
   });
   ReproduceReport report;
-  physics::Checks checks(report, "one term at a time, mean of " + std::to_string(size.records) +
-                                     " records of " + std::to_string(size.samples) + " samples");
+  FigureChecks checks(report, "one term at a time, mean of " + std::to_string(size.records) + " records of " +
+                                  std::to_string(size.samples) + " samples");
   for (std::size_t i = 0; i < figures.size(); ++i) {
     double sum = 0;
     for (int r = 0; r < size.records; ++r)

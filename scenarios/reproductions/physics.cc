@@ -2,32 +2,16 @@
 
 #include <array>
 
-#include "scenarios/parallel.h"
-#include "scenarios/physics/checks.h"
+#include "scenarios/physics/groups.h"
 
 namespace piperun::scenarios {
 namespace {
 
-using Group = void (*)(const ReproduceOptions&, ReproduceReport&);
-constexpr std::array<Group, 7> kGroups{physics::CheckDrag,      physics::CheckFall,    physics::CheckContact,
-                                       physics::CheckOrder,     physics::CheckCarried, physics::CheckClosure,
-                                       physics::CheckTurbulence};
+constexpr std::array<CheckGroup, 7> kGroups{
+    physics::CheckDrag,    physics::CheckFall,    physics::CheckContact,   physics::CheckOrder,
+    physics::CheckCarried, physics::CheckClosure, physics::CheckTurbulence};
 
-ReproduceReport Study(const ReproduceOptions& options) {
-  std::array<ReproduceReport, kGroups.size()> parts;
-  RunParallel(
-      static_cast<int>(kGroups.size()), options.jobs, options.stop,
-      [&](int i) { kGroups[static_cast<std::size_t>(i)](options, parts[static_cast<std::size_t>(i)]); },
-      [&](double fraction) {
-        if (options.progress) options.progress(fraction, "physics");
-      });
-  ReproduceReport report;
-  for (ReproduceReport& part : parts) {
-    std::move(part.tables.begin(), part.tables.end(), std::back_inserter(report.tables));
-    std::move(part.figures.begin(), part.figures.end(), std::back_inserter(report.figures));
-  }
-  return report;
-}
+ReproduceReport Study(const ReproduceOptions& options) { return RunGroups(kGroups, "physics", options); }
 
 }  // namespace
 

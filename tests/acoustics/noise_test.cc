@@ -18,26 +18,6 @@ TEST(Decay, IsTheExponentialWithinSinglePrecision) {
   EXPECT_EQ(CalcDecay(0), 1);
 }
 
-TEST(InverseRealFft, EqualsTheSum) {
-  const std::size_t size = 32;
-  InverseRealFft fft(size);
-  std::vector<std::complex<float>> spectrum;
-  for (std::size_t k = 0; k <= size / 2; ++k) {
-    const auto x = static_cast<float>(k);
-    spectrum.emplace_back(std::cos(x * x), std::sin(3 * x));
-  }
-  std::vector<float> signal(size);
-  fft.Transform(spectrum, signal);
-  for (std::size_t n = 0; n < size; ++n) {
-    double sum = spectrum[0].real() + (n % 2 ? -1 : 1) * spectrum[size / 2].real();
-    for (std::size_t k = 1; k < size / 2; ++k) {
-      const double angle = 2 * std::numbers::pi * static_cast<double>(k * n) / static_cast<double>(size);
-      sum += 2 * (spectrum[k].real() * std::cos(angle) - spectrum[k].imag() * std::sin(angle));
-    }
-    EXPECT_NEAR(signal[n], sum, 1e-5);
-  }
-}
-
 /// A million complex normal numbers.
 class ComplexNormalsTest : public testing::Test {
  protected:

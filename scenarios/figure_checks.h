@@ -1,16 +1,17 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "scenarios/reproduction.h"
 
-namespace piperun::scenarios::physics {
+namespace piperun::scenarios {
 
 /// Holds figures against what they should be and keeps them, under the name of one group.
-class Checks {
+class FigureChecks {
  public:
-  Checks(ReproduceReport& report, std::string group) : report_(report), group_(std::move(group)) {}
+  FigureChecks(ReproduceReport& report, std::string group) : report_(report), group_(std::move(group)) {}
 
   /// |measured - expected| <= tolerance; not a number fails.
   void Near(const std::string& what, double measured, double expected, double tolerance,
@@ -32,13 +33,12 @@ class Checks {
   std::string group_;
 };
 
-// The groups, each a study of its own. docs/physics.md, "What checks it", tells what they are about.
-void CheckDrag(const ReproduceOptions& options, ReproduceReport& report);
-void CheckFall(const ReproduceOptions& options, ReproduceReport& report);
-void CheckContact(const ReproduceOptions& options, ReproduceReport& report);
-void CheckOrder(const ReproduceOptions& options, ReproduceReport& report);
-void CheckCarried(const ReproduceOptions& options, ReproduceReport& report);
-void CheckClosure(const ReproduceOptions& options, ReproduceReport& report);
-void CheckTurbulence(const ReproduceOptions& options, ReproduceReport& report);
+/// A part of a study.
+using CheckGroup = void (*)(const ReproduceOptions&, ReproduceReport&);
 
-}  // namespace piperun::scenarios::physics
+/// Runs the groups side by side and puts their reports together in their order. `note` goes with the
+/// progress.
+ReproduceReport RunGroups(std::span<const CheckGroup> groups, const std::string& note,
+                          const ReproduceOptions& options);
+
+}  // namespace piperun::scenarios
