@@ -50,8 +50,7 @@ class Segments {
     spectrum_.resize(fft_.bins());
   }
   std::span<const std::complex<float>> Transform(std::size_t begin) {
-    for (std::size_t n = 0; n < window_.size(); ++n)
-      weighted_[n] = window_[n] * (record_[begin + n] - mean_);
+    for (std::size_t n = 0; n < window_.size(); ++n) weighted_[n] = window_[n] * (record_[begin + n] - mean_);
     fft_.Forward(weighted_, spectrum_);
     return spectrum_;
   }
@@ -83,8 +82,12 @@ void Scale(double factor, CrossSpectra& spectra) {
 }
 
 /// Where the records begin when b is read `shift` samples ahead.
-std::size_t BeginOfA(std::int64_t shift) { return static_cast<std::size_t>(std::max<std::int64_t>(0, -shift)); }
-std::size_t BeginOfB(std::int64_t shift) { return static_cast<std::size_t>(std::max<std::int64_t>(0, shift)); }
+std::size_t BeginOfA(std::int64_t shift) {
+  return static_cast<std::size_t>(std::max<std::int64_t>(0, -shift));
+}
+std::size_t BeginOfB(std::int64_t shift) {
+  return static_cast<std::size_t>(std::max<std::int64_t>(0, shift));
+}
 
 }  // namespace
 

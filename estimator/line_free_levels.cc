@@ -1,19 +1,16 @@
 #include "estimator/line_free_levels.h"
 
-#include <kiss_fftr.h>
-
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
-#include <type_traits>
 #include <vector>
 
 #include "base/check.h"
+#include "estimator/real_fft.h"
 
 namespace piperun::estimator {
 namespace {
-
-static_assert(std::is_same_v<kiss_fft_scalar, float>, "link the single-precision kissfft");
 
 constexpr double kFall = 2.5;  // power of the frequency with which noise falls
 constexpr double kIndependentShare = 1 / 1.6;
@@ -22,13 +19,12 @@ constexpr double kIndependentShare = 1 / 1.6;
 
 struct LineFreeLevels::Plan {
   Plan(std::size_t even_samples, double rate_Hz)
-      : config(kiss_fftr_alloc(static_cast<int>(even_samples), 0, nullptr, nullptr)),
+      : fft(even_samples),
         bin_Hz(rate_Hz / static_cast<double>(even_samples)),
         window(even_samples),
         weighted(even_samples),
         spectrum(even_samples / 2 + 1),
         flat(spectrum.size()) {
-    Demand(config != nullptr, "kissfft has a plan for every even size");
     sorted.reserve(flat.size());
     double energy = 0;
     for (std::size_t i = 0; i < even_samples; ++i) {
@@ -41,19 +37,16 @@ struct LineFreeLevels::Plan {
     density.resize(flat.size());
     power.resize(flat.size());
   }
-  ~Plan() { kiss_fftr_free(config); }
-  Plan(const Plan&) = delete;
-  Plan& operator=(const Plan&) = delete;
 
   std::size_t First(double low_Hz) const { return static_cast<std::size_t>(std::ceil(low_Hz / bin_Hz)); }
   std::size_t Last(double high_Hz) const {
     return std::min(static_cast<std::size_t>(high_Hz / bin_Hz), flat.size() - 1);
   }
 
-  kiss_fftr_cfg config;
+  RealFft fft;
   double bin_Hz;
   std::vector<float> window, weighted;
-  std::vector<kiss_fft_cpx> spectrum;
+  std::vector<std::complex<float>> spectrum;
   double scale = 0;             // makes |X_k|^2 a density
   std::vector<double> density;  // P_k
   std::vector<double> flat;     // f_k^2.5
@@ -75,9 +68,9 @@ void LineFreeLevels::Transform(std::span<const float> frame_Pa) {
   Plan& p = *plan_;
   Demand(frame_Pa.size() >= p.window.size(), "a frame fills its transform");
   for (std::size_t i = 0; i < p.window.size(); ++i) p.weighted[i] = p.window[i] * frame_Pa[i];
-  kiss_fftr(p.config, p.weighted.data(), p.spectrum.data());
+  p.fft.Forward(p.weighted, p.spectrum);
   for (std::size_t k = 0; k < p.power.size(); ++k) {
-    const auto re = static_cast<double>(p.spectrum[k].r), im = static_cast<double>(p.spectrum[k].i);
+    const auto re = static_cast<double>(p.spectrum[k].real()), im = static_cast<double>(p.spectrum[k].imag());
     p.density[k] = p.scale * (re * re + im * im);
     p.power[k] = p.flat[k] * p.density[k];
   }
