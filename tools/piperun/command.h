@@ -21,6 +21,7 @@ void AddAllanCommand(CLI::App& app, Display& display, int& exit_code);
 void AddConvertUnitsCommand(CLI::App& app, Display& display, int& exit_code);
 void AddRunCommand(CLI::App& app, Display& display, int& exit_code);
 void AddCheckCommand(CLI::App& app, Display& display, int& exit_code);
+void AddCorrelateCommand(CLI::App& app, Display& display, int& exit_code);
 void AddDetectCommand(CLI::App& app, Display& display, int& exit_code);
 void AddEstimateCommand(CLI::App& app, Display& display, int& exit_code);
 void AddNetworkCommand(CLI::App& app, Display& display, int& exit_code);

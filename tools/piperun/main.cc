@@ -43,6 +43,7 @@ int RunApp(int argc, char** argv) {
   AddConvertUnitsCommand(app, display, exit_code);
   AddRunCommand(app, display, exit_code);
   AddCheckCommand(app, display, exit_code);
+  AddCorrelateCommand(app, display, exit_code);
   AddDetectCommand(app, display, exit_code);
   AddEstimateCommand(app, display, exit_code);
   AddNetworkCommand(app, display, exit_code);
