@@ -14,7 +14,7 @@ double CalcLeakPsdAtHole(const AcousticScene& scene, const SoundingLeak& leak, d
   Demand(leak.pipe >= 0 && static_cast<std::size_t>(leak.pipe) < scene.network.pipes.size(),
          "a leak is in a pipe");
   const PipeWave& wave = scene.network.pipes[static_cast<std::size_t>(leak.pipe)].wave;
-  const double half_impedance = 0.5 * wave.impedance_Pa_s_m3;
+  const double half_impedance = 0.5 * wave.CharacteristicImpedance_Pa_s_m3(f_Hz);
   return half_impedance * half_impedance * leak.sound->VolumeVelocityPsd(f_Hz);
 }
 

@@ -55,7 +55,7 @@ struct AcousticScene {
 };
 
 /// Spectrum at the hole, p = Zc/2 q in each direction of the pipe that goes on both ways:
-/// (Zc/2)^2 S_q(f), one-sided, in Pa^2/Hz; Zc of the pipe that holds the leak. Range f >= 0.
+/// (Zc/2)^2 S_q(f), one-sided, in Pa^2/Hz; Zc at f of the pipe that holds the leak. Range f >= 0.
 double CalcLeakPsdAtHole(const AcousticScene& scene, const SoundingLeak& leak, double f_Hz);
 
 /// Spectrum of a leak in the water at a place: |Z|^2 S_q with Z of network_field.h, and beside the hole what
