@@ -9,8 +9,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kFirstTransverseMode = 1.8412;         // k a at cut-on
-constexpr double kTakeOver = 0.43;                      // of a mode's cut-on: how far near_field.h is good
+constexpr double kFirstTransverseMode = 1.8412;        // k a at cut-on
+constexpr double kTakeOver = 0.43;                     // of a mode's cut-on: how far near_field.h is good
 constexpr double kFirstDistance = 0.1, kGrowth = 1.1;  // in radii
 constexpr int kDistances = 90;
 constexpr int kPartsOfBin = 8;
@@ -60,6 +60,7 @@ ModeWave CalcModeWave(const PipeWave& wave, const DuctMode& mode, double f_Hz) {
 }
 
 double CalcHigherModes(const PipeWave& wave, double r_over_a, double z_m, double f_Hz) {
+  if (wave.X > kLargestCompliance) return 0;
   double sum = 0;
   for (const DuctMode& mode : DuctModes()) {
     if (kTakeOver * mode.root >= CalcKa(wave, f_Hz)) break;
@@ -72,7 +73,7 @@ double CalcHigherModes(const PipeWave& wave, double r_over_a, double z_m, double
 HigherModeTable::HigherModeTable(const PipeWave& wave, double r_over_a, double bin_width_Hz, std::size_t bins)
     : radius_m_(wave.bore_radius_m),
       first_bin_(std::min(bins, FindFirstBin(wave, DuctModes().front(), bin_width_Hz))) {
-  if (first_bin_ == bins) return;
+  if (first_bin_ == bins || wave.X > kLargestCompliance) return;
   rows_.assign(kDistances + 1, std::vector<float>(bins - first_bin_, 0));  // the last one stays silent
   for (const DuctMode& mode : DuctModes()) {
     if (FindFirstBin(wave, mode, bin_width_Hz) >= bins) break;

@@ -9,6 +9,9 @@
 
 namespace piperun::acoustics {
 
+/// Up to this X (pipe_wave.h) a wall holds the modes of a rigid one.
+inline constexpr double kLargestCompliance = 2;
+
 /// What a higher mode of a hole in the wall adds to the power of the plane wave at the hole: at a distance z
 /// along the pipe, `power` exp(-`decay_1_m` |z|) Phi(r)^2,
 ///
@@ -20,9 +23,9 @@ namespace piperun::acoustics {
 /// bounds the mode at its cut-on. Below, the mode is evanescent and part of what near_field.h fits: it takes
 /// over from there by w, a smoothstep from 0.43 of its cut-on to the cut-on.
 ///
-/// Range: walls that are stiff against the water at these frequencies, so iron, steel and concrete; a
-/// straight pipe, as bends, tees and joints mix the modes. In plastic, whose walls give way, the modes
-/// differ.
+/// Range: walls that give less than the water does, X <= kLargestCompliance: iron, steel, copper, cement and
+/// concrete. In plastic (X of 10 and more) the wall is soft at these frequencies, its modes are others, and
+/// nothing is added. A straight pipe: bends, tees and joints mix the modes.
 struct ModeWave {
   double power = 0;
   double decay_1_m = 0;
@@ -30,7 +33,7 @@ struct ModeWave {
 ModeWave CalcModeWave(const PipeWave& wave, const DuctMode& mode, double f_Hz);
 
 /// The sum over all modes that reach at least 0.43 of their cut-on, j' up to kLargestRoot, at a place r from
-/// the axis (mean over the angle). 0 up to 0.43 of the first cut-on.
+/// the axis (mean over the angle). 0 up to 0.43 of the first cut-on and in soft walls.
 double CalcHigherModes(const PipeWave& wave, double r_over_a, double z_m, double f_Hz);
 
 /// The same on the bins of a frame, the mean over each bin, tabulated over the distance.

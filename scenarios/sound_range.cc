@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acoustics/higher_modes.h"
 #include "base/number.h"
 
 namespace piperun::scenarios {
@@ -44,6 +45,7 @@ std::vector<std::string> WarnOfSoundRange(const Network& network, const acoustic
   std::vector<std::string> warnings;
   for (const PipeClass& c : ListClasses(network, scene)) {
     const double ring_Hz = c.wave->ring_frequency_Hz, holds_Hz = kLawHoldsTo * ring_Hz;
+    const bool soft = c.wave->X > acoustics::kLargestCompliance;
     const std::string where = "sound: in " + NamePipes(c.ids);
     if (top_Hz > holds_Hz) {
       warnings.push_back(where + " the wave's law holds to " + Hertz(holds_Hz) + ", " +
@@ -53,7 +55,8 @@ std::vector<std::string> WarnOfSoundRange(const Network& network, const acoustic
     if (top_Hz > c.wave->cut_on_Hz) {
       warnings.push_back(where + " the plane wave is alone to " + Hertz(c.wave->cut_on_Hz) +
                          ", the first cut-on; the record goes to " + Hertz(top_Hz) +
-                         ", and higher modes are heard only from leaks in the ball's own pipe");
+                         (soft ? ", and in a wall this soft no higher modes are told"
+                               : ", and higher modes are heard only from leaks in the ball's own pipe"));
     }
   }
   return warnings;

@@ -153,6 +153,14 @@ TEST(HigherModeTable, IsTheMeanOverEachBin) {
   }
 }
 
+TEST(HigherModes, AreNotToldInSoftWalls) {
+  const PipeWave wave = MakePvcWave();  // 5.7 kHz
+  EXPECT_EQ(CalcHigherModes(wave, 0.9, 0.1, 7000), 0);
+  std::vector<float> psd(512, 0);
+  HigherModeTable(wave, 0.9, 15.625, 512).AddTo(psd, std::vector<float>(512, 1), 0.1, 1);
+  for (const float x : psd) EXPECT_EQ(x, 0);
+}
+
 TEST(HigherModeTable, IsEmptyBelowTheFirstCutOn) {
   const PipeWave wave = MakeIronWave();  // 5.4 kHz
   std::vector<float> psd(100, 0);
