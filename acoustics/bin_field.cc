@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "acoustics/phase_row.h"
 #include "base/check.h"
 
 namespace piperun::acoustics {
@@ -43,8 +44,9 @@ void BinField::Open(const NetworkField& field, const AcousticNetwork& network,
     for (std::size_t k = 0; k < bins_; ++k) {
       listening.power_loss_1_m.push_back(static_cast<float>(2 * CalcLoss_Np_m(wave, stretch, k)));
     }
+    const PhaseRow phases = CalcPhaseRow(wave, bin_width_Hz_, bins_);
     for (std::size_t source = 0; source < field.sources(); ++source)
-      listening.fields.emplace_back(stretch.length_m, 2 * bin_width_Hz_ / wave.speed_m_s, bins_);
+      listening.fields.emplace_back(stretch.length_m, phases, bins_);
   }
 }
 

@@ -67,12 +67,26 @@ void ListenerSpectrum::TabulateLeaks(const AcousticScene& scene, const std::vect
     places.push_back(leak.place());
     spectra.push_back(
         Tabulate(high_pass, bin_width_Hz, [&](double f_Hz) { return leak.sound->VolumeVelocityPsd(f_Hz); }));
-    LeakRow& row = leaks_.emplace_back(LeakRow{leak.id, leak.place(), leak.times, wave.bore_radius_m, {}});
+    LeakRow& row =
+        leaks_.emplace_back(LeakRow{leak.id, leak.place(), leak.times, wave.bore_radius_m, {}, {}});
+    row.modes = FindOrMakeModes(scene, wave, bin_width_Hz);
+    row.at_hole =
+        Tabulate(high_pass, bin_width_Hz, [&](double f_Hz) { return CalcLeakPsdAtHole(scene, leak, f_Hz); });
     row.near = Tabulate(high_pass, bin_width_Hz, [&](double f_Hz) {
       return CalcNearField(wave, 0, f_Hz) * CalcLeakPsdAtHole(scene, leak, f_Hz);
     });
   }
   field_.emplace(scene.network, places, spectra, bin_width_Hz, ListPipes(scene));
+}
+
+std::size_t ListenerSpectrum::FindOrMakeModes(const AcousticScene& scene, const PipeWave& wave,
+                                              double bin_width_Hz) {
+  const auto found = std::find_if(mode_tables_.begin(), mode_tables_.end(),
+                                  [&](const ModeRow& row) { return row.wave == wave; });
+  if (found != mode_tables_.end()) return static_cast<std::size_t>(found - mode_tables_.begin());
+  const double r_over_a = CalcListeningRadius(scene.ball, wave.bore_radius_m);
+  mode_tables_.push_back({wave, HigherModeTable(wave, r_over_a, bin_width_Hz, scratch_.size())});
+  return mode_tables_.size() - 1;
 }
 
 void ListenerSpectrum::Calc(const ListenerState& listener, std::span<float> psd) {
@@ -125,8 +139,9 @@ void ListenerSpectrum::AddLeak(std::size_t leak, const ListenerState& listener, 
     for (std::size_t k = 1; k < psd.size(); ++k) psd[k] += share * scratch_[k];
   }
   if (listener.pipe != row.place.pipe) return;
-  const auto fading =
-      share * static_cast<float>(CalcNearFieldFading(row.bore_radius_m, listener.s_m - row.place.s_m));
+  const double z_m = listener.s_m - row.place.s_m;
+  mode_tables_[row.modes].table.AddTo(psd, row.at_hole, z_m, share);
+  const auto fading = share * static_cast<float>(CalcNearFieldFading(row.bore_radius_m, z_m));
   if (fading < 1e-6F) return;
   for (std::size_t k = 1; k < psd.size(); ++k) psd[k] += fading * row.near[k];
 }

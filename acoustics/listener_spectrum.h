@@ -8,6 +8,7 @@
 
 #include "acoustics/bin_field.h"
 #include "acoustics/flow_noise_table.h"
+#include "acoustics/higher_modes.h"
 #include "acoustics/hydrophone.h"
 #include "acoustics/scene.h"
 
@@ -39,15 +40,24 @@ class ListenerSpectrum {
     PipePlace place;
     SoundingTimes times;
     double bore_radius_m = 0;
-    std::vector<float> near;  // what the near field adds at the hole itself, behind the input stage
+    std::vector<float> near;     // what the near field adds at the hole itself, behind the input stage
+    std::vector<float> at_hole;  // of the plane wave, behind the input stage
+    std::size_t modes = 0;       // which of mode_tables_
+  };
+  /// Of pipes that carry the same wave.
+  struct ModeRow {
+    PipeWave wave;
+    HigherModeTable table;
   };
 
   void TabulateLeaks(const AcousticScene& scene, const std::vector<double>& high_pass, double bin_width_Hz);
+  std::size_t FindOrMakeModes(const AcousticScene& scene, const PipeWave& wave, double bin_width_Hz);
   void AddRolling(const ListenerState& listener, std::span<float> psd) const;
   void AddEddies(const ListenerState& listener, std::span<float> psd);
   void AddLeak(std::size_t leak, const ListenerState& listener, std::span<float> psd);
 
   std::vector<LeakRow> leaks_;
+  std::vector<ModeRow> mode_tables_;
   std::optional<BinField> field_;  // of the leaks, if any
   std::vector<float> distant_, self_, steady_;
   std::vector<float> rolling_;  // at 1 m/s; empty: none

@@ -10,8 +10,7 @@ namespace piperun::acoustics {
 ///   n = (k a^2 / R)^2 exp(-(z / (0.15 D))^2),  R^2 = a^2 + z^2,  k = 2 pi f / c_f,
 ///
 /// a fit to the sum of 3,394 modes of a rigid pipe that holds a monopole in its wall, within 2.1 dB for f up
-/// to 0.43 of the first cut-on. Above that the true field is stronger and speckled, by 10 dB and more beside
-/// the hole; n is then held at what it is there.
+/// to 0.43 of the first cut-on. Above that n is held at what it is there, and higher_modes.h adds to it.
 double CalcNearField(const PipeWave& wave, double z_m, double f_Hz);
 
 /// How n falls with z: n(z) / n(0).

@@ -174,7 +174,7 @@ void NetworkField::WriteEquations(const Band& band, NodalAdmittance& equations) 
     const auto& pipes = network_.pipes;
     Demand(std::count_if(pipes.begin(), pipes.end(), ends_here) == 1, "a pipe that goes on ends alone");
     const AcousticPipe& pipe = *std::find_if(pipes.begin(), pipes.end(), ends_here);
-    equations.AddShunt(band.UnknownOf(static_cast<int>(node)), 1 / pipe.wave.impedance_Pa_s_m3);
+    equations.AddOutlet(band.UnknownOf(static_cast<int>(node)), pipe.wave);
   }
   equations.Close();
 }
@@ -200,8 +200,8 @@ const NetworkField::Band& NetworkField::BandOf(std::size_t frequency) const {
   return *std::prev(std::upper_bound(bands_.begin(), bands_.end(), frequency, after));
 }
 
-Complex NetworkField::Wavenumber_1_m(const Stretch& s, double f_Hz) const {
-  return CalcWavenumber_1_m(WaveOf(s), f_Hz) - Complex(0, s.local_loss_Np_m);
+Complex NetworkField::Wavenumber_rad_m(const Stretch& s, double f_Hz) const {
+  return WaveOf(s).Wavenumber_rad_m(f_Hz) - Complex(0, s.local_loss_Np_m);
 }
 
 std::size_t NetworkField::FindStretch(const PipePlace& place) const {
@@ -221,7 +221,7 @@ NetworkField::Waves NetworkField::FindWaves(std::size_t frequency, std::size_t s
   const Complex* pressures = band.pressures.data() + column * static_cast<std::size_t>(band.unknowns);
   const Complex p1 = from >= 0 ? pressures[from] : Complex(0), p2 = to >= 0 ? pressures[to] : Complex(0);
   if (from == NodalAdmittance::kGoesOn || to == NodalAdmittance::kGoesOn) return {p1, p2};
-  const Complex e = std::exp(Complex(0, -1) * Wavenumber_1_m(s, frequencies_Hz_[frequency]) * s.length_m);
+  const Complex e = std::exp(Complex(0, -1) * Wavenumber_rad_m(s, frequencies_Hz_[frequency]) * s.length_m);
   return {(p1 - p2 * e) / (1.0 - e * e), (p2 - p1 * e) / (1.0 - e * e)};
 }
 
@@ -231,7 +231,7 @@ Complex NetworkField::Impedance_Pa_s_m3(std::size_t frequency, std::size_t sourc
   const std::size_t stretch = FindStretch(place);
   const Waves waves = FindWaves(frequency, source, stretch);
   const Stretch& s = stretches_[stretch];
-  const Complex ik = Complex(0, 1) * Wavenumber_1_m(s, frequencies_Hz_[frequency]);
+  const Complex ik = Complex(0, 1) * Wavenumber_rad_m(s, frequencies_Hz_[frequency]);
   const double x_m = place.s_m - s.begin_m;
   return waves.forward * std::exp(-ik * x_m) + waves.backward * std::exp(-ik * (s.length_m - x_m));
 }

@@ -13,8 +13,8 @@ class NodalAdmittance;
 
 /// The plane waves that sources of sound in the walls of a network make everywhere in it, frequency by
 /// frequency: all reflections, branches and loops (Wylie & Streeter, Fluid Transients in Systems, 1993,
-/// chapter 12). With k = omega/c - i alpha, e = exp(-i k L) and the admittance Yc = A / (rho c), the flows
-/// into the two ends of a stretch of pipe are
+/// chapter 12). With k of pipe_wave.h, e = exp(-i k L) and the admittance Yc = A Re k / (rho omega), the
+/// flows into the two ends of a stretch of pipe are
 ///
 ///   q1 = Y11 p1 + Y12 p2,  q2 = Y12 p1 + Y11 p2,  Y11 = Yc (1 + e^2) / (1 - e^2),  Y12 = -2 Yc e / (1 -
 ///   e^2),
@@ -74,7 +74,7 @@ class NetworkField {
   const PipeWave& WaveOf(const Stretch& s) const {
     return network_.pipes[static_cast<std::size_t>(s.pipe)].wave;
   }
-  std::complex<double> Wavenumber_1_m(const Stretch& s, double f_Hz) const;
+  std::complex<double> Wavenumber_rad_m(const Stretch& s, double f_Hz) const;
   void Divide(const std::vector<PipePlace>& sources);
   int FindOrMakeNode(const PipePlace& place, std::vector<Cuts>& cuts);
   void FindReach(Band& band) const;

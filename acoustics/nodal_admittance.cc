@@ -1,17 +1,12 @@
 #include "acoustics/nodal_admittance.h"
 
 #include <algorithm>
-#include <numbers>
 
 #include "base/check.h"
 
 namespace piperun::acoustics {
 
 using Complex = std::complex<double>;
-
-Complex CalcWavenumber_1_m(const PipeWave& wave, double f_Hz) {
-  return {2 * std::numbers::pi * f_Hz / wave.speed_m_s, -wave.Attenuation_Np_m(f_Hz)};
-}
 
 void NodalAdmittance::AddPipe(int a, int b, const PipeWave& wave, double local_loss_Np_m, double length_m) {
   pipes_.push_back({a, b, &wave, local_loss_Np_m, length_m, nullptr, nullptr, nullptr, nullptr});
@@ -25,6 +20,8 @@ void NodalAdmittance::AddLink(int a, int b, double admittance_m3_s_Pa) {
 }
 
 void NodalAdmittance::AddShunt(int a, double admittance_m3_s_Pa) { AddConstant(a, a, admittance_m3_s_Pa); }
+
+void NodalAdmittance::AddOutlet(int a, const PipeWave& wave) { AddPipe(a, kGoesOn, wave, 0, 0); }
 
 void NodalAdmittance::AddConstant(int row, int column, double admittance) {
   if (row >= 0 && column >= 0) constants_.push_back({row, column, admittance});
@@ -51,9 +48,9 @@ void NodalAdmittance::Close() {
 void NodalAdmittance::Fill(double f_Hz) {
   std::copy(constant_values_.begin(), constant_values_.end(), matrix_.valuePtr());
   for (const PipeEntry& pipe : pipes_) {
-    const double yc = 1 / pipe.wave->impedance_Pa_s_m3;
+    const double yc = 1 / pipe.wave->CharacteristicImpedance_Pa_s_m3(f_Hz);
     const bool ends = pipe.a != kGoesOn && pipe.b != kGoesOn;
-    const Complex k_1_m = CalcWavenumber_1_m(*pipe.wave, f_Hz) - Complex(0, pipe.local_loss_Np_m);
+    const Complex k_1_m = pipe.wave->Wavenumber_rad_m(f_Hz) - Complex(0, pipe.local_loss_Np_m);
     const Complex e = ends ? std::exp(Complex(0, -1) * k_1_m * pipe.length_m) : Complex(0);
     const Complex y11 = yc * (1.0 + e * e) / (1.0 - e * e), y12 = -2 * yc * e / (1.0 - e * e);
     if (pipe.aa) *pipe.aa += y11;

@@ -9,9 +9,6 @@
 
 namespace piperun::acoustics {
 
-/// k = omega/c - i alpha.
-std::complex<double> CalcWavenumber_1_m(const PipeWave& wave, double f_Hz);
-
 /// The equations Y p = q of a network's nodes (network_field.h), one frequency after the other.
 class NodalAdmittance {
  public:
@@ -24,6 +21,8 @@ class NodalAdmittance {
   void AddPipe(int a, int b, const PipeWave& wave, double local_loss_Np_m, double length_m);
   void AddLink(int a, int b, double admittance_m3_s_Pa);
   void AddShunt(int a, double admittance_m3_s_Pa);
+  /// A pipe that begins here and does not end.
+  void AddOutlet(int a, const PipeWave& wave);
   /// No more of them.
   void Close();
 

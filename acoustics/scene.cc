@@ -1,8 +1,10 @@
 #include "acoustics/scene.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "acoustics/flow_noise.h"
+#include "acoustics/higher_modes.h"
 #include "acoustics/near_field.h"
 #include "acoustics/network_field.h"
 #include "acoustics/rolling.h"
@@ -14,7 +16,7 @@ double CalcLeakPsdAtHole(const AcousticScene& scene, const SoundingLeak& leak, d
   Demand(leak.pipe >= 0 && static_cast<std::size_t>(leak.pipe) < scene.network.pipes.size(),
          "a leak is in a pipe");
   const PipeWave& wave = scene.network.pipes[static_cast<std::size_t>(leak.pipe)].wave;
-  const double half_impedance = 0.5 * wave.impedance_Pa_s_m3;
+  const double half_impedance = 0.5 * wave.CharacteristicImpedance_Pa_s_m3(f_Hz);
   return half_impedance * half_impedance * leak.sound->VolumeVelocityPsd(f_Hz);
 }
 
@@ -29,7 +31,10 @@ double CalcLeakPsd(const AcousticScene& scene, const SoundingLeak& leak,
   const double plane = std::norm(impedance_Pa_s_m3) * leak.sound->VolumeVelocityPsd(f_Hz);
   if (place.pipe != leak.pipe) return plane;
   const PipeWave& wave = scene.network.pipes[static_cast<std::size_t>(leak.pipe)].wave;
-  return plane + CalcNearField(wave, place.s_m - leak.s_m, f_Hz) * CalcLeakPsdAtHole(scene, leak, f_Hz);
+  const double z_m = place.s_m - leak.s_m;
+  const double beside = CalcNearField(wave, z_m, f_Hz) +
+                        CalcHigherModes(wave, CalcListeningRadius(scene.ball, wave.bore_radius_m), z_m, f_Hz);
+  return plane + beside * CalcLeakPsdAtHole(scene, leak, f_Hz);
 }
 
 double CalcBackgroundPsd(const AcousticScene& scene, const ListenerState& listener, double face_radius_m,
@@ -40,6 +45,10 @@ double CalcBackgroundPsd(const AcousticScene& scene, const ListenerState& listen
   if (!scene.ambient.flow_noise || listener.pipe < 0 || speed_m_s <= 0) return distant;
   const WallFlow flow = CalcWallFlow(speed_m_s, listener.bore_radius_m, scene.water);
   return distant + CalcWallPressurePsd(flow, f_Hz) * CalcFaceAveraging(flow, face_radius_m, f_Hz);
+}
+
+double CalcListeningRadius(const StruckBall& ball, double bore_radius_m) {
+  return std::max(0.0, 1 - ball.radius_m / bore_radius_m);
 }
 
 double CalcRollingSpeed(const AcousticScene& scene, const ListenerState& listener) {

@@ -55,12 +55,12 @@ struct AcousticScene {
 };
 
 /// Spectrum at the hole, p = Zc/2 q in each direction of the pipe that goes on both ways:
-/// (Zc/2)^2 S_q(f), one-sided, in Pa^2/Hz; Zc of the pipe that holds the leak. Range f >= 0.
+/// (Zc/2)^2 S_q(f), one-sided, in Pa^2/Hz; Zc at f of the pipe that holds the leak. Range f >= 0.
 double CalcLeakPsdAtHole(const AcousticScene& scene, const SoundingLeak& leak, double f_Hz);
 
-/// Spectrum of a leak in the water at a place: |Z|^2 S_q with Z of network_field.h, and beside the hole what
-/// near_field.h adds to CalcLeakPsdAtHole. Zero where no sound comes. Solves the network: for checks and for
-/// a few frequencies; a record takes bin_field.h.
+/// Spectrum of a leak in the water at a place: |Z|^2 S_q with Z of network_field.h, and in the pipe of the
+/// hole what near_field.h and higher_modes.h add to CalcLeakPsdAtHole. Zero where no sound comes. Solves the
+/// network: for checks and for a few frequencies; a record takes bin_field.h.
 double CalcLeakPsd(const AcousticScene& scene, const SoundingLeak& leak, const PipePlace& place, double f_Hz);
 /// The same from an impedance that is known.
 double CalcLeakPsd(const AcousticScene& scene, const SoundingLeak& leak,
@@ -71,6 +71,9 @@ double CalcLeakPsd(const AcousticScene& scene, const SoundingLeak& leak,
 /// pass. One-sided, Pa^2/Hz, f > 0.
 double CalcBackgroundPsd(const AcousticScene& scene, const ListenerState& listener, double face_radius_m,
                          double f_Hz);
+
+/// How far from the axis the hydrophone is in a ball that runs along the wall, over the bore's radius.
+double CalcListeningRadius(const StruckBall& ball, double bore_radius_m);
 
 /// How fast a ball rolls whose rolling is heard: zero for a soft one, for one in no pipe and where the scene
 /// leaves rolling out.

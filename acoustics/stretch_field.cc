@@ -40,6 +40,26 @@ class Turns {
   float coarse_, fine_;
 };
 
+/// Slow sums at two steps, and how far it is from the first to the second.
+struct SlowSums {
+  const float *re_0, *im_0, *re_1, *im_1;
+  float share;
+};
+
+/// Re (C exp(-2 pi i phase)) of the bins from `begin` on.
+template <class PhaseOf>
+[[gnu::always_inline]] inline void AddTurned(const SlowSums& sums, int begin, int end, float* power_of_bins,
+                                             PhaseOf phase_of) {
+  const float* __restrict re_0 = sums.re_0, * __restrict im_0 = sums.im_0, * __restrict re_1 = sums.re_1, * __restrict im_1 = sums.im_1;
+  const float share = sums.share;
+  float* __restrict power = power_of_bins;
+  for (int k = begin; k < end; ++k) {
+    const Phasor fast = CalcPhasor(phase_of(k));
+    const float re = re_0[k] + share * (re_1[k] - re_0[k]), im = im_0[k] + share * (im_1[k] - im_0[k]);
+    power[k] += re * fast.cos + im * fast.sin;
+  }
+}
+
 /// Single precision, and nothing below -60 dB re 1 uPa^2/Hz, 100 dB below what hydrophones make of
 /// themselves: what is left of it after kInaudibleLoss would be a denormal number, and slow.
 float Round(double psd) { return std::abs(psd) < 1e-18 ? 0 : static_cast<float>(psd); }
@@ -65,9 +85,10 @@ double StretchField::OffsetInBin(std::size_t bin, std::size_t part) {
   return offsets[part];
 }
 
-StretchField::StretchField(double length_m, double turns_1_m, std::size_t bins)
+StretchField::StretchField(double length_m, const PhaseRow& phases, std::size_t bins)
     : length_m_(length_m),
-      turns_1_m_(turns_1_m),
+      turns_1_m_(phases.turns_1_m),
+      excess_turns_1_m_(phases.excess_turns_1_m),
       forward_(bins),
       backward_(bins),
       re_0_(bins),
@@ -80,6 +101,7 @@ StretchField::StretchField(double length_m, double turns_1_m, std::size_t bins)
     Part& part = parts_[j];
     part.re.resize(bins), part.im.resize(bins);
     for (std::size_t k = 0; k < bins; ++k) part.offset.push_back(static_cast<float>(OffsetInBin(k, j)));
+    for (std::size_t k = 0; k < phases.slopes.size(); ++k) part.offset[k] *= phases.slopes[k];
   }
 }
 
@@ -114,7 +136,7 @@ void StretchField::Add(double x_m, std::span<const float> power_loss_1_m, std::s
   std::fill(power_.begin(), power_.begin() + bins, 0.F);
   AddWave(forward_, there_m, power_loss_1_m, there);
   AddWave(backward_, back_m, power_loss_1_m, back);
-  if (standing > 0) AddStandingWave(turns_1_m_ * (x_m - 0.5 * length_m_), standing);
+  if (standing > 0) AddStandingWave(x_m - 0.5 * length_m_, standing);
   const float* __restrict power = power_.data();
   float* __restrict sum = psd.data();
   for (int k = 1; k < bins; ++k) sum[k] += power[k] > 0 ? power[k] : 0;  // below: rounding, in a node
@@ -128,21 +150,19 @@ void StretchField::AddWave(const std::vector<float>& wave, float way_m, std::spa
   for (int k = 1; k < bins; ++k) power[k] += at_end[k] * CalcDecay(loss[k] * way_m);
 }
 
-/// `u` in turns per bin.
 PIPERUN_CLONE_FOR("avx2")
-void StretchField::AddStandingWave(double u, int bins) {
+void StretchField::AddStandingWave(double from_middle_m, int bins) {
+  const double u = turns_1_m_ * from_middle_m;  // turns per bin
   const double step = std::floor(kStepsPerTurn * u);
   if (static_cast<int>(step) != slow_step_) MoveSlowPhase(static_cast<int>(step));
-  const auto share = static_cast<float>(kStepsPerTurn * u - step);
+  const SlowSums sums{re_0_.data(), im_0_.data(), re_1_.data(), im_1_.data(),
+                      static_cast<float>(kStepsPerTurn * u - step)};
   const Turns turns(u);
-  const float *__restrict re_0 = re_0_.data(), *__restrict im_0 = im_0_.data(), *__restrict re_1 = re_1_.data(),
-                          *__restrict im_1 = im_1_.data();
-  float* __restrict power = power_.data();
-  for (int k = 1; k < bins; ++k) {
-    const Phasor fast = CalcPhasor(turns.Multiple(k));
-    const float re = re_0[k] + share * (re_1[k] - re_0[k]), im = im_0[k] + share * (im_1[k] - im_0[k]);
-    power[k] += re * fast.cos + im * fast.sin;
-  }
+  const float *excess = excess_turns_1_m_.data(), way_m = static_cast<float>(from_middle_m);
+  const int dispersive = std::min(bins, static_cast<int>(excess_turns_1_m_.size()));
+  AddTurned(sums, 1, dispersive, power_.data(),
+            [=](int k) { return WrapTurns(turns.Multiple(k) + excess[k] * way_m); });
+  AddTurned(sums, std::max(1, dispersive), bins, power_.data(), [=](int k) { return turns.Multiple(k); });
 }
 
 void StretchField::MoveSlowPhase(int step) {

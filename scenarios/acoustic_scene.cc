@@ -1,6 +1,11 @@
 #include "scenarios/acoustic_scene.h"
 
 #include <cmath>
+#include <string>
+
+#include "base/check.h"
+#include "scenarios/pipe_sound.h"
+#include "scenarios/wave_table.h"
 
 namespace piperun::scenarios {
 namespace {
@@ -51,15 +56,27 @@ void AddResistance(const Pipeline& pipeline, int pipe, double specific_weight_N_
   network.links.push_back({fitting.to_node, behind, 2 * drop_Pa / flow_m3_s});
 }
 
+/// Throws with the key path of the pipe.
+const acoustics::PipeWave& FindWave(const Pipeline& pipeline, std::size_t i, WaveTable& waves) {
+  const Pipe& pipe = pipeline.network.pipes()[i];
+  try {
+    return waves.Find(MakePipeSection(pipe.diameter_m, pipe.wall_thickness_m, pipe.material,
+                                      pipeline.drawing.pipes[i].sound));
+  } catch (const InputError& e) {
+    throw InputError("pipe '" + pipe.id + "': " + e.problem(),
+                     "network.pipes[" + std::to_string(i) + "]." + e.key_path());
+  }
+}
+
 }  // namespace
 
 acoustics::AcousticNetwork MakeAcousticNetwork(const Pipeline& pipeline, const WaterProperties& water,
                                                double gravity_m_s2) {
   acoustics::AcousticNetwork network;
-  for (const Pipe& pipe : pipeline.network.pipes()) {
-    network.pipes.push_back(
-        {pipe.from, pipe.to, pipe.length_m,
-         acoustics::CalcPipeWave(pipe.diameter_m, pipe.wall_thickness_m, pipe.material, water)});
+  WaveTable waves(water);
+  for (std::size_t i = 0; i < pipeline.network.pipes().size(); ++i) {
+    const Pipe& pipe = pipeline.network.pipes()[i];
+    network.pipes.push_back({pipe.from, pipe.to, pipe.length_m, FindWave(pipeline, i, waves)});
   }
   network.ends = FindEnds(pipeline);
   for (std::size_t i = 0; i < network.pipes.size(); ++i) {

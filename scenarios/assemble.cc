@@ -8,6 +8,7 @@
 #include "scenarios/acoustic_scene.h"
 #include "scenarios/network_params.h"
 #include "scenarios/sound_list.h"
+#include "scenarios/sound_range.h"
 
 namespace piperun::scenarios {
 namespace {
@@ -114,6 +115,18 @@ void BuildChannels(const Scenario& scenario, Assembly& assembly) {
   }
 }
 
+/// Where hydrophones listen beyond what is known of the pipes' waves.
+void WarnOfSound(const Scenario& scenario, Assembly& assembly) {
+  double top_Hz = 0;
+  for (const SensorEntry& entry : scenario.sensors) {
+    const auto* hydrophone = dynamic_cast<const acoustics::HydrophoneParams*>(&entry.kind.params());
+    if (hydrophone) top_Hz = std::max(top_Hz, 0.5 * hydrophone->rate_Hz);
+  }
+  if (!assembly.pipeline) return;
+  for (std::string& warning : WarnOfSoundRange(*assembly.network(), assembly.scene, top_Hz))
+    assembly.pipeline->warnings.push_back(std::move(warning));
+}
+
 std::unique_ptr<Assembly> Build(const Scenario& scenario) {
   auto assembly = std::make_unique<Assembly>();
   assembly->water = CalcWater(scenario.water.temperature_C);
@@ -136,6 +149,7 @@ std::unique_ptr<Assembly> Build(const Scenario& scenario) {
   }
   BuildMotion(scenario, *assembly);
   BuildChannels(scenario, *assembly);
+  WarnOfSound(scenario, *assembly);
   return assembly;
 }
 

@@ -13,6 +13,8 @@ struct EmbeddedFile {
 
 const std::vector<EmbeddedFile>& EmbeddedScenarios();      ///< scenarios/library/*.yaml
 const std::vector<EmbeddedFile>& EmbeddedMaterials();      ///< assets/materials/*.yaml
+const std::vector<EmbeddedFile>& EmbeddedSoils();          ///< assets/soils/*.yaml
+const std::vector<EmbeddedFile>& EmbeddedLinings();        ///< assets/linings/*.yaml
 const std::vector<EmbeddedFile>& EmbeddedBalls();          ///< assets/balls/*.yaml
 const std::vector<EmbeddedFile>& EmbeddedSensors();        ///< assets/sensors/*.yaml
 const std::vector<EmbeddedFile>& EmbeddedNetworks();       ///< assets/networks/*.inp

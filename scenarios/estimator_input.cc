@@ -81,7 +81,9 @@ MapParams MakeMap(const Pipeline& pipeline) {
     if (node_used[i]) map.network.nodes.push_back(pipeline.drawing.nodes[i]);
   }
   for (std::size_t i = 0; i < pipe_used.size(); ++i) {
-    if (pipe_used[i]) map.network.pipes.push_back(pipeline.drawing.pipes[i]);
+    if (!pipe_used[i]) continue;
+    map.network.pipes.push_back(pipeline.drawing.pipes[i]);
+    map.network.pipes.back().sound = {};  // what lies around a pipe is not on the crew's drawing
   }
   return map;
 }

@@ -235,8 +235,11 @@ class InpPipeline {
 }  // namespace
 
 Pipeline BuildPipeline(const Scenario& scenario, const WaterProperties& water) {
-  if (scenario.network.inp.empty()) return BuildSeries(scenario, water);
-  return InpPipeline(scenario, water).Build();
+  Pipeline pipeline =
+      scenario.network.inp.empty() ? BuildSeries(scenario, water) : InpPipeline(scenario, water).Build();
+  for (PipeEntry& pipe : pipeline.drawing.pipes)
+    pipe.sound = ResolvePipeSound(pipe.sound, scenario.network.sound);
+  return pipeline;
 }
 
 }  // namespace piperun::scenarios

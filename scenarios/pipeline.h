@@ -15,7 +15,7 @@ namespace piperun::scenarios {
 
 /// The pipes of a scenario with water and leaks in them.
 struct Pipeline {
-  NetworkParams drawing;  ///< nodes and pipes as laid out, for whoever needs a map
+  NetworkParams drawing;  ///< nodes and pipes as laid out, for whoever needs a map; their sound resolved
   Network network;
   sim::FlowTimeline flow;
   std::vector<Leak> leaks;             ///< those listed, then those drawn

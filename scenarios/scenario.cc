@@ -90,6 +90,7 @@ void PipeEntry::Visit(ParamVisitor& v) {
        "K of everything in the pipe that costs head but is neither friction nor a bend, spread along it: "
        "h = K U^2/(2g). An EPANET file brings its own."},
       {.min = 0, .max = 1e4}, minor_loss);
+  sound.Visit(v);
 }
 
 void NetworkParams::Visit(ParamVisitor& v) {
@@ -112,6 +113,7 @@ void NetworkSource::Visit(ParamVisitor& v) {
   v.Text({"material_rules",
           "EPANET file: rules that give every pipe its material and wall (empty: piperun's own)."},
          material_rules);
+  sound.Visit(v);
   v.Struct(
       {"origin", "Where on earth the coordinates begin; then leaks are also written as dig points, GeoJSON."},
       origin);

@@ -11,6 +11,7 @@
 #include "base/params.h"
 #include "scenarios/geo_origin.h"
 #include "scenarios/kind_entry.h"
+#include "scenarios/pipe_sound.h"
 #include "scenarios/yaml_document.h"
 #include "sim/ball.h"
 
@@ -54,6 +55,7 @@ struct PipeEntry {
   bool fit_bends = false;
   bool passable = true;
   double minor_loss = 0;
+  PipeSoundParams sound;
   void Visit(ParamVisitor& v);
 };
 
@@ -69,6 +71,7 @@ struct NetworkSource : NetworkParams {
   std::optional<double> map_unit_m;  ///< nothing: fitted to the stated lengths
   double bend_radius_diameters = 1.5;
   std::string material_rules;
+  NetworkSoundParams sound;  ///< of all pipes
   GeoOrigin origin;
   std::string inp_text;             ///< of the file `inp`, read with the scenario
   std::string material_rules_text;  ///< of the file `material_rules`; empty: piperun's own rules

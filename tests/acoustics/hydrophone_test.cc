@@ -226,7 +226,8 @@ TEST(Hydrophone, CountsWhatItClips) {
   AcousticScene scene = MakeQuietScene(MakeStiffWave());
   const double pressure_rms_Pa = 1;
   const double impedance = MakeStiffWave().impedance_Pa_s_m3;
-  AddLeak(scene, 10, std::make_shared<FlatSound>(4 / (impedance * impedance) / 4000, 2000, 6000));
+  // below the first cut-on at 5.4 kHz: a plane wave
+  AddLeak(scene, 10, std::make_shared<FlatSound>(4 / (impedance * impedance) / 2000, 2000, 4000));
   HydrophoneParams params = MakeNoiselessHydrophone();
   params.full_scale_Pa = 2 * pressure_rms_Pa;
   for (const std::int64_t bits : {16, 24}) {

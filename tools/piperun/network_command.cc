@@ -20,6 +20,7 @@
 #include "tools/piperun/command.h"
 #include "tools/piperun/network_text.h"
 #include "tools/piperun/progress_bar.h"
+#include "tools/piperun/sound_text.h"
 
 namespace piperun::tools {
 namespace {
@@ -29,6 +30,7 @@ struct NetworkArguments {
   bool extended = false;
   bool csv = false;
   bool all = false;
+  bool sound = false;
   std::string accuracy, ball_mm, from, to, svg;
 };
 
@@ -158,6 +160,20 @@ int ReportNetwork(sim::HydraulicModel model, const NetworkArguments& arguments, 
   return kOk;
 }
 
+/// The pipes of a scenario as sound finds them.
+int ReportSound(const NetworkArguments& arguments, const Display& display) {
+  if (std::filesystem::path(arguments.file).extension() == ".inp") {
+    throw InputError("needs walls, which a scenario gives; `piperun scenario new` makes one from this file",
+                     "--sound", arguments.file);
+  }
+  if (display.json) throw InputError("choose --csv, or neither", "--json");
+  const scenarios::Scenario scenario = scenarios::LoadScenario(arguments.file);
+  if (arguments.csv || !display.quiet) {
+    fmt::print("{}", arguments.csv ? WriteSoundCsv(scenario) : DescribeSound(scenario, arguments.all));
+  }
+  return kOk;
+}
+
 constexpr const char* kFooter =
     "CSV columns: time_s, element (node or link), id, kind, then for nodes elevation_m, head_m, pressure_m,\n"
     "demand_m3_s, for links from, to, flow_m3_s, velocity_m_s, head_loss_m, status.\n"
@@ -184,11 +200,14 @@ void AddNetworkCommand(CLI::App& app, Display& display, int& exit_code) {
   command->add_option("--to", arguments->to, "Tell the fastest way to this node")->needs(from);
   command->add_option("--svg", arguments->svg,
                       "Draw the network in plan, with --from and --to the way between");
+  command->add_flag("--sound", arguments->sound,
+                    "Tell how the pipes of a scenario carry sound: speed, dB/m, ring frequency, cut-on");
   command->add_flag("--all", arguments->all, "Print tables in full");
   command->add_flag("--csv", arguments->csv, "Print results as CSV");
   command->footer(kFooter);
   command->callback([arguments, &display, &exit_code] {
-    exit_code = ReportNetwork(Load(arguments->file), *arguments, display);
+    exit_code = arguments->sound ? ReportSound(*arguments, display)
+                                 : ReportNetwork(Load(arguments->file), *arguments, display);
   });
 }
 
