@@ -106,6 +106,10 @@ class AttitudeKalman : public AttitudeFilter {
     P_.template topLeftCorner<3, 3>() += growth + growth.transpose();
     P_.template topRightCorner<3, n - 3>() += Bb.template rightCols<n - 3>();
     P_.template bottomLeftCorner<n - 3, 3>() = P_.template topRightCorner<3, n - 3>().transpose();
+    AddNoise(step);
+  }
+  /// To P, what the step's gyro noise and the bias' walk add.
+  void AddNoise(const ImuStep& step) {
     P_.diagonal().template segment<3>(kBias).array() +=
         params_.gyro_bias_walk_rad_s2_sqrtHz * params_.gyro_bias_walk_rad_s2_sqrtHz * step.dt_s;
     AddTurnNoise(step);

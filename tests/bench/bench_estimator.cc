@@ -8,6 +8,7 @@
 #include "estimator/allan.h"
 #include "estimator/attitude_eskf.h"
 #include "estimator/attitude_iekf.h"
+#include "estimator/attitude_ukf.h"
 #include "estimator/filter_kind.h"
 #include "estimator/leak_locator.h"
 
@@ -104,6 +105,7 @@ void BM_AttitudeUpdate(benchmark::State& state) {
 }
 BENCHMARK(BM_AttitudeUpdate<AttitudeEskf>);
 BENCHMARK(BM_AttitudeUpdate<AttitudeIekf>);
+BENCHMARK(BM_AttitudeUpdate<AttitudeUkf>);
 BENCHMARK(BM_AttitudeUpdate<AttitudeEkf>);
 
 void BM_AudioBlock(benchmark::State& state, const LocatorKind& kind) {
