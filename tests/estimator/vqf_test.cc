@@ -195,7 +195,7 @@ TEST(Vqf, FindsTheBiasAtRestOnEveryAxis) {
 TEST(Vqf, FindsTheBiasInMotion) {
   ModelWorld world = MatchedWorld(0);
   world.tumble_rad_s = 0.3;  // slower than the low pass, which else sees little of a bias in S
-  world.count = 60000;       // six times the forgetting time
+  world.count = 120000;      // twelve times the forgetting time, C taking three quarters of the information
   ModelRecord record = DrawPerfect(world);
   const Vector3d bias(0.01, -0.012, 0.008);
   Vqf filter({}, {}, kField_W_T);
