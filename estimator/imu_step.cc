@@ -46,6 +46,7 @@ std::optional<ImuStep> ImuStepper::Step(const ImuSample& sample) {
   step.w_S_rad_s = sample.w_WS_S_rad_s;
   step.dw_S_rad_s = sample.w_WS_S_rad_s - before_->w_WS_S_rad_s;
   step.f_S_m_s2 = sample.f_WS_S_m_s2;
+  step.saturated = sample.flags.saturated;
   if (sample.increments) {
     step.dtheta_S_rad = sample.increments->dtheta_S_rad;
     step.f_S_m_s2 = sample.increments->dv_S_m_s / covered_s;

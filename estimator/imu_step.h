@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "base/measurement.h"
@@ -16,6 +17,10 @@ struct ImuStep {
   Vector3d f_S_m_s2 = Vector3d::Zero();      ///< mean specific force
   bool f_at_begin =
       false;  ///< f_S is given in the frame at the beginning of the interval, else in its middle
+  std::uint8_t saturated = 0;  ///< axes that met the end of their range, as in ImuFlags
+
+  bool GyroClipped(int axis) const { return (saturated >> axis & 1) != 0; }
+  bool AccelerometerClipped() const { return saturated >> 3 != 0; }
 };
 
 /// Rotation vector over an interval of length T from the mean rates of this and the preceding interval, for a

@@ -6,6 +6,9 @@
 
 #include "base/random.h"
 #include "estimator/allan.h"
+#include "estimator/attitude_eskf.h"
+#include "estimator/attitude_iekf.h"
+#include "estimator/attitude_ukf.h"
 #include "estimator/filter_kind.h"
 #include "estimator/leak_locator.h"
 
@@ -81,6 +84,29 @@ void BM_ImuUpdate(benchmark::State& state, const FilterKind& kind) {
   }
   benchmark::DoNotOptimize(filter->nav().chainage_m);
 }
+
+/// The attitude filter alone: one interval with its gravity update, and an eighth of a magnetometer sample.
+template <class Filter>
+void BM_AttitudeUpdate(benchmark::State& state) {
+  Filter filter({}, 9.80665, kField_W_T);
+  filter.AlignTilt({0, 0, 9.80665});
+  ImuStep step;
+  step.dt_s = 1 / kRate_Hz;
+  step.w_S_rad_s = {0, kSpin_rad_s, 0};
+  step.dtheta_S_rad = step.dt_s * step.w_S_rad_s;
+  std::int64_t k = 0;
+  for (auto _ : state) {
+    step.f_S_m_s2 = std::get<ImuSample>(ImuAt(++k).value).f_WS_S_m_s2;
+    filter.Propagate(step);
+    filter.UpdateGravity(step, 0.05);
+    if (k % 8 == 0) filter.UpdateMagnetic(MagAt(k).m_S_T, Vector3d::Zero());
+  }
+  benchmark::DoNotOptimize(filter.q_WS().w());
+}
+BENCHMARK(BM_AttitudeUpdate<AttitudeEskf>);
+BENCHMARK(BM_AttitudeUpdate<AttitudeIekf>);
+BENCHMARK(BM_AttitudeUpdate<AttitudeUkf>);
+BENCHMARK(BM_AttitudeUpdate<AttitudeEkf>);
 
 void BM_AudioBlock(benchmark::State& state, const LocatorKind& kind) {
   const auto params = kind.make_params();
