@@ -49,6 +49,7 @@ void Append(const std::vector<RouteLeg>& more, std::vector<RouteLeg>& legs) {
 /// A pipeline written down pipe by pipe: along its route, in series.
 Pipeline BuildSeries(const Scenario& scenario, const WaterProperties& water) {
   Network network = MakeNetwork(scenario.network);
+  MakeFittings(scenario.network, network);  // refuses what does not fit
   const Stops stops = FindStops(scenario.mission, network);
   if (stops.retrieve < 0) {
     throw InputError("the node is missing; where water only enters, name where it leaves",
@@ -206,6 +207,9 @@ class InpPipeline {
         network_(MakeNetwork(drawing_.network)),
         stops_(FindStops(scenario.mission, network_)) {
     model_.options.accuracy = std::min(model_.options.accuracy, kAccuracy);
+    auto& fittings = drawing_.network.fittings;
+    fittings.insert(fittings.end(), scenario.network.fittings.begin(), scenario.network.fittings.end());
+    MakeFittings(drawing_.network, network_);  // refuses what does not fit
   }
 
   Pipeline Build() {

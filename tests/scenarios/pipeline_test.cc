@@ -277,7 +277,7 @@ Scenario MakeClosedDeadEnd(const std::string& demand_L_s) {
   };
   replace(" S2     B1      TAP1    75.00   100   0.01       0      Open",
           " S2     B1      TAP1    75.00   100   0.01       0      Closed");
-  replace(" TAP1    13.00     0.70", " TAP1    13.00     " + demand_L_s);
+  replace(" TAP1      13.00     0.70", " TAP1      13.00     " + demand_L_s);
   return scenario;
 }
 
