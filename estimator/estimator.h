@@ -7,6 +7,7 @@
 #include "base/measurement.h"
 #include "base/network.h"
 #include "base/route.h"
+#include "estimator/fitting.h"
 
 namespace piperun::estimator {
 
@@ -14,6 +15,7 @@ namespace piperun::estimator {
 struct RouteMap {
   Network network;
   Route route;
+  std::vector<Fitting> fittings{};  ///< pumps, valves, services; tees are seen in the network
 };
 
 /// All an estimator is told before the first measurement. Never leaks, never truth.
@@ -66,8 +68,9 @@ struct LeakEstimate {
   ChainageInterval interval{};  ///< holds the leak with a probability of 95 %
   Vector3d p_W = Vector3d::Zero();
   std::optional<double> flow_m3_s;
-  double flow_sigma_dB = 0;  ///< standard deviation of 20 lg flow, calibration included
-  double confidence = 0;     ///< 0 to 1
+  double flow_sigma_dB = 0;         ///< standard deviation of 20 lg flow, calibration included
+  double confidence = 0;            ///< 0 to 1
+  std::optional<std::string> at{};  ///< the map's fitting that may make this noise: "valve V1"
 };
 
 /// What Finish() may add: the track again, using all measurements.

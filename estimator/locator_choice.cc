@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "estimator/fitting_flags.h"
 
 namespace piperun::estimator {
 namespace {
@@ -49,7 +50,12 @@ void LocatorChoice::Visit(ParamVisitor& v) {
 }
 
 std::unique_ptr<LeakLocator> LocatorChoice::Make(const EstimatorStart& start) const {
-  return params_ ? FindKind(kind_)->make(*params_, start) : nullptr;
+  if (!params_) return nullptr;
+  auto locator = FindKind(kind_)->make(*params_, start);
+  if (!start.map) return locator;
+  auto fittings = PlaceFittings(start.map->network, start.map->route, start.map->fittings);
+  if (fittings.empty()) return locator;
+  return std::make_unique<FittingFlags>(std::move(locator), std::move(fittings));
 }
 
 }  // namespace piperun::estimator

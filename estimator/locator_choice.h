@@ -21,7 +21,7 @@ class LocatorChoice {
   void Visit(ParamVisitor& v);
   bool none() const { return !params_; }
   const std::string& kind() const { return kind_; }
-  /// Nothing for "none".
+  /// Nothing for "none". A map with fittings or tees has the locator's leaks judged by them (FittingFlags).
   std::unique_ptr<LeakLocator> Make(const EstimatorStart& start) const;
 
  private:

@@ -1,6 +1,7 @@
 #include "scenarios/detect.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <memory>
@@ -8,11 +9,13 @@
 
 #include "acoustics/sound_file.h"
 #include "base/check.h"
+#include "base/nearest_name.h"
 #include "base/number.h"
 #include "estimator/band_frames.h"
 #include "estimator/leak_locator.h"
+#include "scenarios/dig_points.h"
 #include "scenarios/materials.h"
-#include "base/nearest_name.h"
+#include "scenarios/network_params.h"
 #include "scenarios/yaml_document.h"
 
 namespace piperun::scenarios {
@@ -25,29 +28,44 @@ constexpr double kNav_s = 0.05;
 constexpr std::size_t kMostLevels = 2000;
 
 struct TrackRow {
-  double time_s = 0, chainage_m = 0;
+  double time_s = 0, chainage_m = 0, sd_m = 0;
 };
 
-TrackRow ParseTrackRow(const std::string& line, const std::string& where) {
-  const std::size_t comma = line.find(',');
-  const auto time_s = ParseNumber(std::string_view(line).substr(0, comma));
-  const auto chainage_m =
-      comma == std::string::npos ? std::nullopt : ParseNumber(std::string_view(line).substr(comma + 1));
-  if (!time_s || !chainage_m)
-    throw InputError("'" + line + "' is not two numbers, time_s,chainage_m", "", where);
-  return {*time_s, *chainage_m};
+constexpr const char* kTrackHeader = "time_s,chainage_m";
+constexpr const char* kTrackSdHeader = "time_s,chainage_m,chainage_sd_m";
+
+TrackRow ParseTrackRow(const std::string& line, bool with_sd, const std::string& where) {
+  std::vector<double> fields;
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t comma = std::min(line.find(',', begin), line.size());
+    const auto field = ParseNumber(std::string_view(line).substr(begin, comma - begin));
+    if (!field) break;
+    fields.push_back(*field);
+    begin = comma + 1;
+  }
+  const std::string header = with_sd ? kTrackSdHeader : kTrackHeader;
+  const auto columns = static_cast<std::size_t>(std::count(header.begin(), header.end(), ',')) + 1;
+  const auto commas = static_cast<std::size_t>(std::count(line.begin(), line.end(), ','));
+  if (fields.size() != columns || commas + 1 != columns)
+    throw InputError("'" + line + "' is not a row of numbers " + header, "", where);
+  if (with_sd && fields[2] < 0)
+    throw InputError("a standard deviation of " + FormatNumber(fields[2]) + " m; it must be >= 0",
+                     "chainage_sd_m", where);
+  return {fields[0], fields[1], with_sd ? fields[2] : 0};
 }
 
 std::vector<TrackRow> LoadTrack(const std::filesystem::path& path) {
   std::ifstream file(path);
   std::string line;
   if (!file || !std::getline(file, line)) throw InputError("cannot be read", "", path.string());
-  if (line != "time_s,chainage_m")
-    throw InputError("the header is '" + line + "'; it must be time_s,chainage_m", "", path.string() + ":1");
+  const bool with_sd = line == kTrackSdHeader;
+  if (line != kTrackHeader && !with_sd)
+    throw InputError("the header is '" + line + "'; it must be " + kTrackHeader + " or " + kTrackSdHeader, "",
+                     path.string() + ":1");
   std::vector<TrackRow> rows;
   for (int number = 2; std::getline(file, line); ++number) {
     const std::string where = path.string() + ":" + std::to_string(number);
-    rows.push_back(ParseTrackRow(line, where));
+    rows.push_back(ParseTrackRow(line, with_sd, where));
     if (rows.size() > 1 && rows.back().time_s <= rows[rows.size() - 2].time_s)
       throw InputError("time " + FormatNumber(rows.back().time_s) + " s does not rise", "time_s", where);
   }
@@ -59,11 +77,18 @@ std::vector<TrackRow> LoadTrack(const std::filesystem::path& path) {
 class Way {
  public:
   explicit Way(const DetectOptions& options) {
-    if (!options.track.empty()) rows_ = LoadTrack(options.track);
     if (options.pipe) {
       start_m_ = options.pipe->start_chainage_m;
       speed_m_s_ = options.pipe->speed_m_s;
+      speed_sd_m_s_ = options.pipe->speed_sd_m_s;
     }
+    if (options.speed_sd_m_s) speed_sd_m_s_ = *options.speed_sd_m_s;
+    if (!(speed_sd_m_s_ >= 0 && std::isfinite(speed_sd_m_s_)))
+      throw InputError(FormatNumber(speed_sd_m_s_) + " m/s is not allowed; it must be >= 0", "--speed-sd");
+    if (options.track.empty()) return;
+    if (options.speed_sd_m_s)
+      throw InputError("a track brings its own uncertainty: a third column, chainage_sd_m", "--speed-sd");
+    rows_ = LoadTrack(options.track);
   }
   /// Throws InputError unless the track covers the record.
   void RequireCovers(double duration_s, const std::filesystem::path& track) const {
@@ -74,16 +99,37 @@ class Way {
                      "time_s", track.string());
   }
   double Chainage_m(double time_s) const {
-    if (rows_.empty()) return start_m_ + speed_m_s_ * time_s;
-    const auto later = std::partition_point(rows_.begin() + 1, rows_.end() - 1,
-                                            [&](const TrackRow& row) { return row.time_s < time_s; });
-    const TrackRow &a = *(later - 1), &b = *later;
-    return a.chainage_m + (time_s - a.time_s) / (b.time_s - a.time_s) * (b.chainage_m - a.chainage_m);
+    return rows_.empty() ? start_m_ + speed_m_s_ * time_s : Interpolate(time_s, &TrackRow::chainage_m);
+  }
+  double Sd_m(double time_s) const {
+    return rows_.empty() ? speed_sd_m_s_ * time_s : Interpolate(time_s, &TrackRow::sd_m);
+  }
+  /// What an interval holds.
+  std::string DescribeErrors() const {
+    const std::string sound = "the sound's place on the way";
+    if (rows_.empty()) {
+      return speed_sd_m_s_ > 0 ? sound + ", and a constant speed of " + FormatNumber(speed_m_s_) +
+                                     " m/s known to " + FormatNumber(speed_sd_m_s_) + " m/s"
+                               : sound + " only: the constant speed of " + FormatNumber(speed_m_s_) +
+                                     " m/s is taken as exact (--speed-sd)";
+    }
+    const bool known = std::any_of(rows_.begin(), rows_.end(), [](const TrackRow& r) { return r.sd_m > 0; });
+    return known ? sound + ", and the track's own uncertainty"
+                 : sound +
+                       " only: the track is taken as exact (a third column, chainage_sd_m, says how "
+                       "uncertain it is)";
   }
 
  private:
+  double Interpolate(double time_s, double TrackRow::*field) const {
+    const auto later = std::partition_point(rows_.begin() + 1, rows_.end() - 1,
+                                            [&](const TrackRow& row) { return row.time_s < time_s; });
+    const TrackRow &a = *(later - 1), &b = *later;
+    return a.*field + (time_s - a.time_s) / (b.time_s - a.time_s) * (b.*field - a.*field);
+  }
+
   std::vector<TrackRow> rows_;
-  double start_m_ = 0, speed_m_s_ = 0.5;
+  double start_m_ = 0, speed_m_s_ = 0.5, speed_sd_m_s_ = 0;
 };
 
 estimator::EstimatorStart MakeStart(const DetectPipe& pipe, double length_m) {
@@ -100,10 +146,23 @@ estimator::EstimatorStart MakeStart(const DetectPipe& pipe, double length_m) {
                    pipe.wall.density_kg_m3,
                    pipe.wall.roughness_m,
                    pipe.wall.relative_permeability};
-  Network network({{"A", {0, 0, 0}}, {"B", {length_m, 0, 0}}}, {spec});
+  Vector3d begin_W = Vector3d::Zero(), end_W{length_m, 0, 0};
+  if (!pipe.line_m.empty()) {
+    std::vector<Vector3d> line_W;
+    for (std::size_t i = 0; i + 2 < pipe.line_m.size(); i += 3)
+      line_W.emplace_back(pipe.line_m[i], pipe.line_m[i + 1], pipe.line_m[i + 2]);
+    begin_W = line_W.front();
+    end_W = line_W.back();
+    spec.vertices_m.assign(line_W.begin() + 1, line_W.end() - 1);
+    spec.length_m = pipe.length_m.value_or(0);
+  }
+  Network network({{"A", begin_W}, {"B", end_W}}, {spec});
   Route route(network, {{0, false}});
+  std::vector<estimator::Fitting> fittings;
+  for (const DetectFitting& fitting : pipe.fittings)
+    fittings.push_back({FittingKindOf(fitting.kind), fitting.id, 0, fitting.chainage_m});
   estimator::EstimatorStart start;
-  start.map = estimator::RouteMap{std::move(network), std::move(route)};
+  start.map = estimator::RouteMap{std::move(network), std::move(route), std::move(fittings)};
   return start;
 }
 
@@ -210,6 +269,7 @@ class Navigator {
       nav.stamp = RobotTime(FromSeconds(t_s));
       nav.valid = true;
       nav.chainage_m = way_.Chainage_m(t_s);
+      nav.chainage_sd_m = way_.Sd_m(t_s);
       nav.p_W = {nav.chainage_m, 0, 0};
       locator.IngestNav(nav);
     }
@@ -222,6 +282,12 @@ class Navigator {
 
 }  // namespace
 
+void DetectFitting::Visit(ParamVisitor& v) {
+  v.Text({"id", "Name of the fitting.", true}, id);
+  v.Choice({"kind", "What it is."}, std::array<std::string_view, 3>{"pump", "valve", "service"}, kind);
+  v.Number({"chainage_m", "Where it is.", true}, Range::NonNegative(), chainage_m);
+}
+
 void DetectPipe::Visit(ParamVisitor& v) {
   const std::vector<std::string_view> names = MaterialNames();
   v.Choice({"material", "Wall material, a name from the material library."}, names, material);
@@ -232,10 +298,17 @@ void DetectPipe::Visit(ParamVisitor& v) {
   v.NumberOr({"length_m", "Length of the route."}, {.min = 1, .max = 1e6}, "as_recorded", length_m);
   v.Number({"speed_m_s", "Speed of the ball, constant, when no track is given."}, Range::Positive(),
            speed_m_s);
+  v.Number({"speed_sd_m_s", "How well that speed is known, standard deviation; intervals then hold it."},
+           Range::NonNegative(), speed_sd_m_s);
   v.Number({"start_chainage_m", "Where the record begins, when no track is given."}, Range::Any(),
            start_chainage_m);
   v.Number({"full_scale_Pa", "Pressure of the largest sample the file can hold."}, Range::Positive(),
            full_scale_Pa);
+  v.Items({"fittings", "Pumps, valves and services along the pipe: detections at them are flagged."},
+          fittings);
+  v.Table({"line_m", "The pipe's axis, rows of east, north, up, for dig points."}, Range::Between(-1e6, 1e6),
+          3, line_m);
+  v.Struct({"origin", "Where on earth those coordinates begin."}, origin);
   v.Struct({"locator", "How leaks are told, where the command line does not say."}, locator);
 }
 
@@ -244,6 +317,16 @@ DetectPipe LoadDetectPipe(const std::filesystem::path& path) {
   YamlDocument::FromFile(path.string()).Read([&](ParamVisitor& v) { pipe.Visit(v); });
   return pipe;
 }
+
+namespace {
+
+/// Leaks where the drawn pipe has their chainages.
+void PlaceOnEarth(const DetectPipe& pipe, const estimator::RouteMap& map, Detections& result) {
+  for (estimator::LeakEstimate& leak : result.leaks) leak.p_W = map.route.Eval(leak.chainage_m).p_W;
+  if (pipe.origin.known()) result.origin = pipe.origin;
+}
+
+}  // namespace
 
 Detections Detect(const DetectOptions& options) {
   acoustics::SoundFile file(options.audio);
@@ -284,6 +367,8 @@ Detections Detect(const DetectOptions& options) {
   locator->Finish();
   result.full_scale_samples = intake.full_scale();
   result.leaks = locator->leaks();
+  result.interval_holds = way.DescribeErrors();
+  if (options.pipe && !options.pipe->line_m.empty()) PlaceOnEarth(*options.pipe, *start.map, result);
   result.levels = levels.Take();
   return result;
 }
@@ -299,6 +384,7 @@ std::string WriteDetectionsJson(const Detections& detections) {
          {"interval_m",
           detections.placed ? Json(Json::array({leak.interval.low_m, leak.interval.high_m})) : Json()},
          {"confidence", leak.confidence},
+         {"at", leak.at ? Json(*leak.at) : Json()},
          {"flow_m3_s", leak.flow_m3_s ? Json(*leak.flow_m3_s) : Json()},
          {"flow_sigma_dB", leak.flow_m3_s ? Json(leak.flow_sigma_dB) : Json()}});
   }
@@ -308,20 +394,32 @@ std::string WriteDetectionsJson(const Detections& detections) {
                   {"rate_Hz", detections.rate_Hz},
                   {"duration_s", detections.duration_s},
                   {"full_scale_samples", detections.full_scale_samples},
+                  {"interval_holds", detections.placed ? Json(detections.interval_holds) : Json()},
                   {"detections", leaks}};
   return json.dump(2) + "\n";
 }
 
 std::string WriteDetectionsCsv(const Detections& detections) {
-  std::string csv = "time_s,chainage_m,sigma_m,confidence,flow_m3_s,flow_sigma_dB\n";
+  std::string csv = "time_s,chainage_m,sigma_m,confidence,flow_m3_s,flow_sigma_dB,at\n";
   for (const estimator::LeakEstimate& leak : detections.leaks) {
     const std::string place =
         detections.placed ? FormatNumber(leak.chainage_m) + "," + FormatNumber(leak.sigma_m) : ",";
     csv += FormatNumber(Seconds(leak.t_cpa)) + "," + place + "," + FormatNumber(leak.confidence) + ",";
     csv += leak.flow_m3_s ? FormatNumber(*leak.flow_m3_s) + "," + FormatNumber(leak.flow_sigma_dB) : ",";
-    csv += "\n";
+    csv += "," + leak.at.value_or("") + "\n";
   }
   return csv;
+}
+
+std::string WriteDetectionsGeoJson(const Detections& detections) {
+  if (!detections.origin) {
+    throw InputError(
+        "the pipe file says nothing of where on earth the pipe lies; give it line_m (rows of east, north, "
+        "up) "
+        "and origin {latitude_deg, longitude_deg}",
+        "--geojson");
+  }
+  return WriteDigPoints(*detections.origin, detections.leaks);
 }
 
 }  // namespace piperun::scenarios

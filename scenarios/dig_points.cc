@@ -18,6 +18,7 @@ Json MakeProperties(const estimator::LeakEstimate& leak) {
                   {"sigma_m", leak.sigma_m},
                   {"interval_m", Json::array({leak.interval.low_m, leak.interval.high_m})},
                   {"confidence", leak.confidence}};
+  if (leak.at) properties["at"] = *leak.at;
   if (!leak.flow_m3_s) return properties;
   const double flow_L_min = kLitrePerMinute * *leak.flow_m3_s;
   const double ratio = std::pow(10, kQuantile975 * leak.flow_sigma_dB / 20);

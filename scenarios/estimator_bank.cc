@@ -16,7 +16,7 @@ constexpr std::string_view kTrackHeader =
     "#timestamp [ns],chainage [m],sigma [m],p_WB_x [m],p_WB_y [m],p_WB_z [m],q_WB_w [],q_WB_x [],q_WB_y [],"
     "q_WB_z [],v_WB_x [m s^-1],v_WB_y [m s^-1],v_WB_z [m s^-1],bg_x [rad s^-1],bg_y [rad s^-1],bg_z [rad "
     "s^-1]\n";
-constexpr std::string_view kLeaksHeader = "chainage_m,sigma_m,x_m,y_m,z_m,t_cpa_ns,flow_m3_s,confidence\n";
+constexpr std::string_view kLeaksHeader = "chainage_m,sigma_m,x_m,y_m,z_m,t_cpa_ns,flow_m3_s,confidence,at\n";
 
 /// Index of the first sample at or after t.
 std::int64_t FirstSampleFrom(RobotTime t, Rate rate) {
@@ -52,7 +52,7 @@ void WriteLeaks(const std::filesystem::path& path, const std::vector<estimator::
   for (const estimator::LeakEstimate& leak : leaks) {
     CsvRow(file) << leak.chainage_m << leak.sigma_m << leak.p_W
                  << static_cast<std::int64_t>(leak.t_cpa.time_since_epoch().count()) << leak.flow_m3_s
-                 << leak.confidence << kEndOfRow;
+                 << leak.confidence << leak.at.value_or("") << kEndOfRow;
   }
   file.Close();
 }

@@ -85,6 +85,10 @@ MapParams MakeMap(const Pipeline& pipeline) {
     map.network.pipes.push_back(pipeline.drawing.pipes[i]);
     map.network.pipes.back().sound = {};  // what lies around a pipe is not on the crew's drawing
   }
+  for (const FittingEntry& fitting : pipeline.drawing.fittings) {
+    const auto pipe = network.FindPipe(fitting.pipe);
+    if (pipe && pipe_used[static_cast<std::size_t>(*pipe)]) map.network.fittings.push_back(fitting);
+  }
   return map;
 }
 
@@ -93,7 +97,8 @@ estimator::EstimatorStart MakeStart(const EstimatorInput& input, const ToldParam
   if (told.map) {
     Network network = MakeNetwork(input.map.network);
     Route way(network, MakeLegs(network, input.map.way));
-    start.map.emplace(estimator::RouteMap{std::move(network), std::move(way)});
+    auto fittings = MakeFittings(input.map.network, network);
+    start.map.emplace(estimator::RouteMap{std::move(network), std::move(way), std::move(fittings)});
   }
   start.chainage_m = told.chainage_m;
   start.chainage_sd_m = told.chainage_sd_m;

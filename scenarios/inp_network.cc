@@ -181,6 +181,11 @@ InpDrawing Drawer::Draw() {
   for (int i = 0; i < model_.first_pump(); ++i) pipes.push_back(MakePipe(i));
   for (int i = model_.first_pump(); i < model_.first_valve(); ++i) pipes.push_back(MakePump(i));
   for (int i = model_.first_valve(); i < model_.link_count(); ++i) pipes.push_back(MakeValve(i));
+  for (int i = model_.first_pump(); i < model_.link_count(); ++i) {
+    const PipeEntry& link = At(pipes, i);
+    const char* kind = i < model_.first_valve() ? "pump" : "valve";
+    drawing.network.fittings.push_back({link.id, kind, link.id, 0.5 * *link.length_m});
+  }
   AddNotes(drawing.notes);
   return drawing;
 }

@@ -18,7 +18,7 @@ struct DrawingParams {
 };
 
 struct InpDrawing {
-  NetworkParams network;
+  NetworkParams network;           ///< its fittings are the pumps and valves
   std::vector<std::string> notes;  ///< what was assumed, for the user to read
 };
 

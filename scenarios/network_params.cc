@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "base/number.h"
 
 namespace piperun::scenarios {
 namespace {
@@ -51,6 +52,31 @@ Network MakeNetwork(const NetworkParams& params) {
     pipes.push_back(MakeSpec(params.pipes[i]));
   }
   return Network(std::move(nodes), pipes);
+}
+
+estimator::FittingKind FittingKindOf(const std::string& name) {
+  for (const auto kind : {estimator::FittingKind::kPump, estimator::FittingKind::kService}) {
+    if (name == estimator::Name(kind)) return kind;
+  }
+  return estimator::FittingKind::kValve;
+}
+
+std::vector<estimator::Fitting> MakeFittings(const NetworkParams& params, const Network& network) {
+  std::vector<estimator::Fitting> fittings;
+  for (std::size_t i = 0; i < params.fittings.size(); ++i) {
+    const FittingEntry& entry = params.fittings[i];
+    const std::string key = "network.fittings[" + std::to_string(i) + "]";
+    RequirePlainId(entry.id, key + ".id");
+    const int pipe = network.RequirePipe(entry.pipe, key + ".pipe");
+    const double length_m = network.pipe(pipe).length_m;
+    if (entry.s_m > length_m) {
+      throw InputError("the fitting lies at " + FormatNumber(entry.s_m) + " m, beyond the pipe's range [0, " +
+                           FormatNumber(length_m) + "] m",
+                       key + ".s_m");
+    }
+    fittings.push_back({FittingKindOf(entry.kind), entry.id, pipe, entry.s_m});
+  }
+  return fittings;
 }
 
 int ResolveNode(const Network& network, const std::string& id, const std::string& key_path) {

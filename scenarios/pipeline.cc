@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "base/check.h"
 #include "base/number.h"
@@ -11,6 +12,7 @@
 #include "scenarios/network_params.h"
 #include "sim/downstream.h"
 #include "sim/hydraulics.h"
+#include "sim/network/drained_part.h"
 #include "sim/network/inp_reader.h"
 #include "sim/network/network_flow.h"
 #include "sim/network/pipe_leak.h"
@@ -47,6 +49,7 @@ void Append(const std::vector<RouteLeg>& more, std::vector<RouteLeg>& legs) {
 /// A pipeline written down pipe by pipe: along its route, in series.
 Pipeline BuildSeries(const Scenario& scenario, const WaterProperties& water) {
   Network network = MakeNetwork(scenario.network);
+  MakeFittings(scenario.network, network);  // refuses what does not fit
   const Stops stops = FindStops(scenario.mission, network);
   if (stops.retrieve < 0) {
     throw InputError("the node is missing; where water only enters, name where it leaves",
@@ -76,19 +79,60 @@ Pipeline BuildSeries(const Scenario& scenario, const WaterProperties& water) {
           .warnings = std::move(flow.warnings)};
 }
 
-/// The hydraulics of an EPANET file from its beginning to `until_s` (or its own end), instant by instant.
-std::vector<sim::HydraulicStep> SolvePeriod(const sim::HydraulicModel& model, double until_s) {
+[[noreturn]] void ThrowDiverged(std::int64_t time_s, const sim::SolveReport& report,
+                                const sim::HydraulicModel& model) {
+  throw HydraulicsDiverged("the hydraulics at " + std::to_string(time_s) + " s " + Describe(report, model));
+}
+
+/// The water of an instant just solved, empty where none comes; names junctions whose demand is not served.
+sim::HydraulicState Settle(const sim::HydraulicModel& model, sim::HydraulicSimulation& simulation,
+                           std::set<int>& unserved) {
+  const std::vector<bool> drained = FindDrained(model, simulation.state());
+  const std::vector<int> dropped = DropDrainedDemands(drained, simulation.state());
+  unserved.insert(dropped.begin(), dropped.end());
+  if (!dropped.empty()) {
+    const sim::SolveReport report = simulation.solver().Solve(simulation.state());
+    if (!report.converged()) ThrowDiverged(simulation.time_s(), report, model);
+  }
+  sim::HydraulicState state = simulation.state();
+  SettleDrained(model, drained, state);
+  return state;
+}
+
+struct Period {
   std::vector<sim::HydraulicStep> steps;
+  std::set<int> unserved;  ///< junctions with a demand that no water reaches, at times
+};
+
+/// The hydraulics of an EPANET file from its beginning to `until_s` (or its own end), instant by instant.
+Period SolvePeriod(const sim::HydraulicModel& model, double until_s) {
+  Period period;
   sim::HydraulicSimulation simulation(model);
   do {
-    const sim::SolveReport& report = simulation.Solve();
-    if (!report.converged()) {
-      throw HydraulicsDiverged("the hydraulics at " + std::to_string(simulation.time_s()) + " s " +
-                               Describe(report, model));
-    }
-    steps.push_back({simulation.time_s(), false, report, simulation.state()});
+    const sim::SolveReport report = simulation.Solve();
+    if (!report.converged()) ThrowDiverged(simulation.time_s(), report, model);
+    period.steps.push_back({simulation.time_s(), false, report, Settle(model, simulation, period.unserved)});
   } while (static_cast<double>(simulation.time_s()) < until_s && simulation.Advance());
-  return steps;
+  return period;
+}
+
+/// Leaks and customers that no water reaches, a sentence each.
+std::vector<std::string> DescribeDry(const Period& period, const sim::LeakyModel& leaky,
+                                     const std::vector<Leak>& leaks, const std::vector<LeakState>& states) {
+  std::vector<std::string> warnings;
+  for (const int junction : period.unserved) {
+    warnings.push_back("node " + leaky.model.NodeId(junction) +
+                       ": closed off from all water: its demand is not served");
+  }
+  for (std::size_t i = 0; i < leaks.size(); ++i) {
+    if (states[i].pressure_drop_Pa > 0) continue;
+    const std::string why =
+        states[i].flow_m3_s == 0 && states[i].pressure_drop_Pa == 0
+            ? "closed dead pipe with no pressure"
+            : "pressure of " + FormatNumber(states[i].pressure_drop_Pa) + " Pa, no more than outside";
+    warnings.push_back("leak " + leaks[i].id + ": " + why + ": no sound");
+  }
+  return warnings;
 }
 
 std::string BallText(const sim::BallParams& ball) {
@@ -129,7 +173,7 @@ std::vector<RouteLeg> PlanAlongWater(const Scenario& scenario, const Network& ne
 /// The model with links as they stand at the launch: what is closed then is closed to the ball.
 sim::HydraulicModel AtLaunch(const sim::HydraulicModel& model, double launch_s) {
   sim::HydraulicModel at_launch = model;
-  const std::vector<sim::HydraulicStep> steps = SolvePeriod(model, launch_s);
+  const std::vector<sim::HydraulicStep> steps = SolvePeriod(model, launch_s).steps;
   std::size_t last = 0;
   while (last + 1 < steps.size() && static_cast<double>(steps[last + 1].time_s) <= launch_s) ++last;
   const sim::HydraulicState& state = steps[last].state;
@@ -163,6 +207,9 @@ class InpPipeline {
         network_(MakeNetwork(drawing_.network)),
         stops_(FindStops(scenario.mission, network_)) {
     model_.options.accuracy = std::min(model_.options.accuracy, kAccuracy);
+    auto& fittings = drawing_.network.fittings;
+    fittings.insert(fittings.end(), scenario.network.fittings.begin(), scenario.network.fittings.end());
+    MakeFittings(drawing_.network, network_);  // refuses what does not fit
   }
 
   Pipeline Build() {
@@ -185,7 +232,8 @@ class InpPipeline {
             stops_.retrieve,
             std::move(plan),
             std::move(notes),
-            std::move(flow.model)};
+            std::move(flow.model),
+            std::move(flow.warnings)};
   }
 
  private:
@@ -193,6 +241,7 @@ class InpPipeline {
     sim::FlowTimeline timeline;
     std::vector<LeakState> leaks;
     sim::HydraulicModel model;
+    std::vector<std::string> warnings;
   };
   Flow Solve(const std::vector<Leak>& leaks) const {
     const double launch_s = scenario_.flow.launch_time_s;
@@ -202,11 +251,12 @@ class InpPipeline {
                        "flow.launch_time_s");
     }
     sim::LeakyModel leaky = sim::InsertLeaks(model_, MakePipeLeaks(leaks), scenario_.gravity_m_s2);
-    const auto steps = SolvePeriod(leaky.model, launch_s + scenario_.mission.time_limit_s);
-    sim::FlowTimeline timeline = sim::MakeFlowTimeline(leaky, steps, launch, network_, water_);
+    const Period period = SolvePeriod(leaky.model, launch_s + scenario_.mission.time_limit_s);
+    sim::FlowTimeline timeline = sim::MakeFlowTimeline(leaky, period.steps, launch, network_, water_);
     std::vector<LeakState> states =
-        sim::CalcLeakStates(leaky, steps, launch, TrueTime{}, water_, scenario_.gravity_m_s2);
-    return {std::move(timeline), std::move(states), std::move(leaky.model)};
+        sim::CalcLeakStates(leaky, period.steps, launch, TrueTime{}, water_, scenario_.gravity_m_s2);
+    std::vector<std::string> warnings = DescribeDry(period, leaky, leaks, states);
+    return {std::move(timeline), std::move(states), std::move(leaky.model), std::move(warnings)};
   }
 
   std::vector<sim::PipeLeak> MakePipeLeaks(const std::vector<Leak>& leaks) const {

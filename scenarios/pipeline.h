@@ -25,7 +25,7 @@ struct Pipeline {
   std::vector<RouteLeg> plan;                       ///< the way the crew expects
   std::vector<std::string> notes;                   ///< what was assumed where the file is silent
   std::optional<sim::HydraulicModel> hydraulics{};  ///< of an EPANET file, with the leaks in it
-  std::vector<std::string> warnings{};              ///< laws of the flow used beyond their range
+  std::vector<std::string> warnings{};              ///< laws used beyond their range; leaks without sound
 };
 
 /// Thrown when the hydraulics of a network do not converge; a run then has the status hydraulics_diverged.

@@ -55,6 +55,7 @@ Json ToJson(const ScoredLeak& leak) {
           {"flow_m3_s", OrNull(leak.estimate.flow_m3_s)},
           {"flow_sigma_dB", leak.estimate.flow_m3_s ? Json(leak.estimate.flow_sigma_dB) : Json()},
           {"confidence", Number(leak.estimate.confidence)},
+          {"at", OrNull(leak.estimate.at)},
           {"match", OrNull(leak.match)},
           {"error_m", OrNull(leak.error_m)},
           {"covered", OrNull(leak.covered)},
@@ -68,7 +69,8 @@ Json ToJson(const EstimatorResult& result) {
           {"smoothed", ToJson(result.smoothed)},
           {"leaks", leaks},
           {"missed", result.leaks.missed},
-          {"false_alarms", result.leaks.false_alarms}};
+          {"false_alarms", result.leaks.false_alarms},
+          {"false_alarms_at_fittings", result.leaks.false_alarms_at_fittings}};
 }
 
 Json TruthToJson(const RunResult& result) {

@@ -93,9 +93,20 @@ void PipeEntry::Visit(ParamVisitor& v) {
   sound.Visit(v);
 }
 
+void FittingEntry::Visit(ParamVisitor& v) {
+  v.Text({"id", "Name of the fitting.", true}, id);
+  v.Choice({"kind", "What it is."}, std::array<std::string_view, 3>{"pump", "valve", "service"}, kind);
+  v.Text({"pipe", "Pipe it is on.", true}, pipe);
+  v.Number({"s_m", "Distance along that pipe from its `from` node."}, Range::NonNegative(), s_m);
+}
+
 void NetworkParams::Visit(ParamVisitor& v) {
   v.Items({"nodes", "Ends of pipes."}, nodes);
   v.Items({"pipes", "Pipes: straight lines with rounded corners, from node to node."}, pipes);
+  v.Items({"fittings",
+           "Pumps, valves and services as the crew's drawings show them, for telling their noise from a "
+           "leak's; those of an EPANET file and tees are known without."},
+          fittings);
 }
 
 void NetworkSource::Visit(ParamVisitor& v) {

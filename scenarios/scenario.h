@@ -59,9 +59,19 @@ struct PipeEntry {
   void Visit(ParamVisitor& v);
 };
 
+/// What the crew's drawings show besides pipes: where a noise need not be a leak.
+struct FittingEntry {
+  std::string id;
+  std::string kind = "valve";
+  std::string pipe;
+  double s_m = 0;
+  void Visit(ParamVisitor& v);
+};
+
 struct NetworkParams {
   std::vector<NodeEntry> nodes;
   std::vector<PipeEntry> pipes;
+  std::vector<FittingEntry> fittings{};
   void Visit(ParamVisitor& v);
 };
 

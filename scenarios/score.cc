@@ -92,8 +92,9 @@ LeakScore ScoreLeaks(const std::vector<estimator::LeakEstimate>& estimates,
   for (std::size_t j = 0; j < truth.size(); ++j) {
     if (!found[j] && truth[j].chainage_m) score.missed.push_back(truth[j].id);
   }
-  score.false_alarms = static_cast<int>(
-      std::count_if(score.leaks.begin(), score.leaks.end(), [](const ScoredLeak& s) { return !s.match; }));
+  for (const ScoredLeak& scored : score.leaks) {
+    if (!scored.match) ++(scored.estimate.at ? score.false_alarms_at_fittings : score.false_alarms);
+  }
   return score;
 }
 

@@ -68,7 +68,8 @@ struct ScoredLeak {
 struct LeakScore {
   std::vector<ScoredLeak> leaks;
   std::vector<std::string> missed;
-  int false_alarms = 0;
+  int false_alarms = 0;              ///< estimates without a leak, away from the map's fittings
+  int false_alarms_at_fittings = 0;  ///< those that say at which fitting they may lie: LeakEstimate::at
 };
 
 /// Matches estimates and leaks one to one by chainage: the closest pair first, then the next closest among

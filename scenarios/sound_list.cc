@@ -117,23 +117,12 @@ void RequireAudibleRolling(const Scenario& scenario) {
   }
 }
 
-std::vector<std::string> NoteSilentLeaks(const Pipeline& pipeline) {
-  std::vector<std::string> notes;
-  for (std::size_t i = 0; i < pipeline.leaks.size(); ++i) {
-    const LeakState& state = pipeline.leak_states[i];
-    if (state.flow_m3_s > 0 && state.pressure_drop_Pa > 0) continue;
-    notes.push_back("leak '" + pipeline.leaks[i].id + "' is silent: no pressure drives water out of it (" +
-                    FormatDigits(state.pressure_drop_Pa, 4) + " Pa)");
-  }
-  return notes;
-}
-
 }  // namespace
 
 std::vector<std::string> AddSounds(const Scenario& scenario, const Pipeline& pipeline,
                                    acoustics::AcousticScene& scene) {
   RequireAudibleRolling(scenario);
-  std::vector<std::string> notes = NoteSilentLeaks(pipeline);
+  std::vector<std::string> notes;
   for (std::size_t i = 0; i < scenario.sounds.size(); ++i) {
     const SoundEntry& entry = scenario.sounds[i];
     const std::string key = "sounds[" + std::to_string(i) + "]";

@@ -1,14 +1,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "estimator/frame_locator.h"
 #include "estimator/impact_gate.h"
-#include "estimator/pipe_loss.h"
 #include "estimator/roof_fit.h"
 #include "estimator/sound_profile.h"
+#include "estimator/wall_classes.h"
 
 namespace piperun::estimator::locators::cfar_ratio {
 namespace {
@@ -46,13 +48,7 @@ struct CfarRatioParams : ParamsOf<CfarRatioParams> {
   }
 };
 
-double ChooseWidth_m(const CfarRatioParams& params, const EstimatorStart& start) {
-  if (params.width_m) return *params.width_m;
-  double slope_dB_m = kPlasticSlope_dB_m;
-  if (start.map) {
-    const Pipe& pipe = start.map->network.pipe(start.map->route.pieces().front().pipe);
-    slope_dB_m = CalcAttenuation_dB_m(pipe, std::sqrt(params.bands.band_low_Hz * params.bands.band_high_Hz));
-  }
+double CalcWidth_m(double slope_dB_m) {
   return std::clamp(2 * kFall_dB / slope_dB_m, kMinWidth_m, kMaxWidth_m);
 }
 
@@ -74,34 +70,30 @@ struct Peak {
 /// taken to a normal deviate by Wallace's formula with n - 1 degrees of freedom. The place is the centroid of
 /// the excess over the background within the cell; its sigma is that of the cell's width over the ratio of
 /// height to scatter, and the track's. Both sides must have been heard.
-class CfarRatio final : public FrameLocator {
+class CfarScan {
  public:
-  CfarRatio(const CfarRatioParams& params, const EstimatorStart& start)
-      : FrameLocator(BandFrames(params.bands)),
-        params_(params),
-        width_m_(ChooseWidth_m(params, start)),
+  using Sink = std::function<void(const LeakEstimate&)>;
+  CfarScan(const CfarRatioParams& params, double width_m, Sink sink)
+      : params_(params),
+        sink_(std::move(sink)),
+        width_m_(width_m),
         side_bins_(kBinsPerCell * (params.guard_cells + params.reference_cells) + kBinsPerCell),
         profile_(width_m_ / kBinsPerCell, 3 * static_cast<double>(side_bins_) * width_m_ / kBinsPerCell) {
     cells_.reserve(2 * static_cast<std::size_t>(params.reference_cells));
     deviations_.reserve(cells_.capacity());
   }
-
- private:
-  void Consume(const LocatedFrame& frame) override {
-    const double band_dB = 10 * std::log10(frame.sound.noise_Pa2);
-    const double ratio_dB = band_dB - 10 * std::log10(frame.sound.reference_noise_Pa2);
-    const auto passed = gate_.Step({frame.ball, {ratio_dB, band_dB, band_dB - ratio_dB, band_dB}}, band_dB);
-    if (!passed) return;
-    profile_.Add(passed->ball, passed->levels_dB);
+  void Add(const TrackPoint& ball, const SoundLevels& levels_dB) {
+    profile_.Add(ball, levels_dB);
     TestUpTo(profile_.last() - side_bins_ - 1);
   }
-  void Complete() override {
+  void Complete() {
     if (profile_.empty()) return;
     TestUpTo(profile_.last() - side_bins_);
     if (best_) ReportPeak(*best_);
     best_.reset();
   }
 
+ private:
   void TestUpTo(std::int64_t bin) {
     if (!next_) next_ = profile_.first() + side_bins_;
     for (; *next_ <= bin; ++*next_) Follow(Test(*next_));
@@ -190,21 +182,58 @@ class CfarRatio final : public FrameLocator {
     leak.interval = CalcNormalInterval(leak.chainage_m, leak.sigma_m);
     leak.p_W = place.p_W;
     leak.confidence = kPriorLeaks_per_km / (kPriorLeaks_per_km + FalseAlarms_per_km(peak.z));
-    Report(leak);
+    sink_(leak);
   }
 
+  CfarRatioParams params_;
+  Sink sink_;
+  double width_m_;
+  std::int64_t side_bins_;
+  SoundProfile profile_;
+  std::vector<double> cells_, deviations_;  // scratch
+  std::optional<std::int64_t> next_;
+  std::optional<Peak> best_;
+};
+
+/// A scan of all frames that were not struck; on a route through walls that damp differently one for each
+/// class of them (ClassifyWalls), with cells of its width, which reports what lies in its own pipes.
+class CfarRatio final : public FrameLocator {
+ public:
+  CfarRatio(const CfarRatioParams& params, const EstimatorStart& start)
+      : FrameLocator(BandFrames(params.bands)) {
+    const double middle_Hz = std::sqrt(params.bands.band_low_Hz * params.bands.band_high_Hz);
+    const auto classes = start.map ? ClassifyWalls(*start.map, middle_Hz) : std::vector<WallClass>{};
+    if (params.width_m || classes.empty()) {
+      AddScan(params, params.width_m.value_or(CalcWidth_m(kPlasticSlope_dB_m)), std::nullopt);
+      return;
+    }
+    for (const WallClass& walls : classes) AddScan(params, CalcWidth_m(walls.slope_dB_m), walls);
+  }
+
+ private:
   struct Heard {
     TrackPoint ball;
     SoundLevels levels_dB{};
   };
-  CfarRatioParams params_;
-  double width_m_;
-  std::int64_t side_bins_;
-  SoundProfile profile_;
+
+  void AddScan(const CfarRatioParams& params, double width_m, std::optional<WallClass> walls) {
+    scans_.push_back(std::make_unique<CfarScan>(params, width_m, [this, walls](const LeakEstimate& leak) {
+      if (!walls || walls->Holds(leak.chainage_m)) Report(leak);
+    }));
+  }
+  void Consume(const LocatedFrame& frame) override {
+    const double band_dB = 10 * std::log10(frame.sound.noise_Pa2);
+    const double ratio_dB = band_dB - 10 * std::log10(frame.sound.reference_noise_Pa2);
+    const auto passed = gate_.Step({frame.ball, {ratio_dB, band_dB, band_dB - ratio_dB, band_dB}}, band_dB);
+    if (!passed) return;
+    for (const auto& scan : scans_) scan->Add(passed->ball, passed->levels_dB);
+  }
+  void Complete() override {
+    for (const auto& scan : scans_) scan->Complete();
+  }
+
+  std::vector<std::unique_ptr<CfarScan>> scans_;
   ImpactGate<Heard> gate_{kHampelLimit, kHampelFloor_dB};
-  std::vector<double> cells_, deviations_;  // scratch
-  std::optional<std::int64_t> next_;
-  std::optional<Peak> best_;
 };
 
 std::unique_ptr<LeakLocator> Make(const Params& params, const EstimatorStart& start) {

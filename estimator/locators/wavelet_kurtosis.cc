@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "estimator/frame_locator.h"
-#include "estimator/pipe_loss.h"
 #include "estimator/ricker_map.h"
+#include "estimator/wall_classes.h"
 #include "estimator/wavelet_frames.h"
 
 namespace piperun::estimator::locators::wavelet_kurtosis {
@@ -39,50 +41,60 @@ struct WaveletKurtosisParams : ParamsOf<WaveletKurtosisParams> {
   }
 };
 
-double ChooseScale_m(const WaveletKurtosisParams& params, const EstimatorStart& start) {
-  if (params.scale_m) return *params.scale_m;
-  double slope_dB_m = kPlasticSlope_dB_m;
-  if (start.map) {
-    const Pipe& pipe = start.map->network.pipe(start.map->route.pieces().front().pipe);
-    slope_dB_m = CalcAttenuation_dB_m(pipe, std::sqrt(params.bands.band_low_Hz * params.bands.band_high_Hz));
-  }
+double CalcScale_m(double slope_dB_m) {
   return std::clamp(kFall_dB / slope_dB_m, kLeastScale_m, kMostScale_m);
 }
 
 /// Wavelets twice: the record's own octaves (WaveletFrames) make the level of a band over a reference band in
 /// frames whose kurtosis is that of Gaussian noise, which leaks are and knocks are not; Ricker's wavelet
-/// along the pipe (RickerMap) finds where that level stands out, at three widths. confidence: as the matched
-/// filter's.
+/// along the pipe (RickerMap) finds where that level stands out, at three widths. A route through walls that
+/// damp differently has a map for each class of them (ClassifyWalls), all of the same sound, each of which
+/// reports what lies in its own pipes. confidence: as the matched filter's.
 class WaveletKurtosis final : public PlacedFrameLocator<WaveletFrames> {
  public:
   WaveletKurtosis(const WaveletKurtosisParams& params, const EstimatorStart& start)
-      : PlacedFrameLocator(WaveletFrames(params.bands)),
-        limit_(params.impulsiveness_limit),
-        map_({ChooseScale_m(params, start), params.false_alarms_per_km, params.min_height_dB},
-             [this](const RickerPeak& peak) { Take(peak); }) {}
+      : PlacedFrameLocator(WaveletFrames(params.bands)), params_(params) {
+    const double middle_Hz = std::sqrt(params.bands.band_low_Hz * params.bands.band_high_Hz);
+    const auto classes = start.map ? ClassifyWalls(*start.map, middle_Hz) : std::vector<WallClass>{};
+    if (params.scale_m || classes.empty()) {
+      AddMap(params.scale_m.value_or(CalcScale_m(kPlasticSlope_dB_m)), std::nullopt);
+      return;
+    }
+    for (const WallClass& walls : classes) AddMap(CalcScale_m(walls.slope_dB_m), walls);
+  }
 
  private:
+  void AddMap(double scale_m, std::optional<WallClass> walls) {
+    const RickerMap::Params params{scale_m, params_.false_alarms_per_km, params_.min_height_dB};
+    const std::size_t index = maps_.size();
+    maps_.push_back(std::make_unique<RickerMap>(params, [this, index, walls](const RickerPeak& peak) {
+      if (!walls || walls->Holds(peak.posterior.mean_m)) Take(peak, *maps_[index]);
+    }));
+  }
   void Consume(const Located<WaveletFrame>& frame) override {
-    if (frame.sound.impulsiveness > limit_) return;
+    if (frame.sound.impulsiveness > params_.impulsiveness_limit) return;
     const double band_dB = 10 * std::log10(frame.sound.power_Pa2);
     const double reference_dB = 10 * std::log10(frame.sound.reference_power_Pa2);
-    map_.Add(frame.ball, {band_dB - reference_dB, band_dB, reference_dB, band_dB});
+    for (const auto& map : maps_)
+      map->Add(frame.ball, {band_dB - reference_dB, band_dB, reference_dB, band_dB});
   }
-  void Complete() override { map_.Complete(); }
+  void Complete() override {
+    for (const auto& map : maps_) map->Complete();
+  }
 
-  void Take(const RickerPeak& peak) {
+  void Take(const RickerPeak& peak, const RickerMap& map) {
     LeakEstimate leak;
     leak.t_cpa = peak.place.time;
     leak.chainage_m = peak.posterior.mean_m;
     leak.sigma_m = peak.posterior.sigma_m;
     leak.interval = {peak.posterior.low_m, peak.posterior.high_m};
     leak.p_W = peak.place.p_W;
-    leak.confidence = kPriorLeaks_per_km / (kPriorLeaks_per_km + map_.CalcFalseAlarms_per_km(peak.z));
+    leak.confidence = kPriorLeaks_per_km / (kPriorLeaks_per_km + map.CalcFalseAlarms_per_km(peak.z));
     Report(leak);
   }
 
-  double limit_;
-  RickerMap map_;
+  WaveletKurtosisParams params_;
+  std::vector<std::unique_ptr<RickerMap>> maps_;
 };
 
 std::unique_ptr<LeakLocator> Make(const Params& params, const EstimatorStart& start) {

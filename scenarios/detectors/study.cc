@@ -5,6 +5,7 @@
 
 #include "acoustics/pipe_wave.h"
 #include "base/random.h"
+#include "estimator/chi_square.h"
 #include "scenarios/materials.h"
 #include "scenarios/parallel.h"
 #include "scenarios/score.h"
@@ -222,6 +223,11 @@ ShareInterval CalcWilsonInterval(int k, int n) {
   const double centre = (p + z2 / (2 * n)) / (1 + z2 / n);
   const double half = kNormal95 / (1 + z2 / n) * std::sqrt(p * (1 - p) / n + z2 / (4.0 * n * n));
   return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
+}
+
+CountInterval CalcPoissonInterval(int k) {
+  return {k > 0 ? 0.5 * estimator::CalcChiSquareQuantile(0.025, 2.0 * k) : 0,
+          0.5 * estimator::CalcChiSquareQuantile(0.975, 2.0 * k + 2)};
 }
 
 std::optional<double> CalcAbsoluteQuantile(std::vector<double> values, double p) {

@@ -74,6 +74,13 @@ struct ShareInterval {
 };
 ShareInterval CalcWilsonInterval(int k, int n);
 
+/// Garwood's interval of a Poisson count's mean at 95 % (Biometrika 28, 437, 1936): half the chi-square
+/// quantiles of 2k and 2k + 2 degrees of freedom. Range: k >= 0.
+struct CountInterval {
+  double low = 0, high = 0;
+};
+CountInterval CalcPoissonInterval(int k);
+
 /// Type 7 of Hyndman & Fan (linear between order statistics) of absolute values; nothing for none.
 std::optional<double> CalcAbsoluteQuantile(std::vector<double> values, double p);
 

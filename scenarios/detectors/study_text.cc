@@ -24,7 +24,7 @@ ReproducedTable TabulateFound(const std::vector<Tally>& tallies) {
   ReproducedTable table{
       "Leaks found, at each locator's own threshold",
       {"pipe", "dB/m at 2 kHz", "SNR dB", "locator", "leaks", "Pd", "Pd low", "Pd high", "median m", "95 % m",
-       "in 95 %", "flow dB median", "flow in 95 %", "false alarms", "km"},
+       "in 95 %", "flow dB median", "flow dB 95 %", "flow in 95 %", "false alarms", "km"},
       {}};
   for (const Tally& t : tallies) {
     if (!t.snr_dB) continue;
@@ -35,6 +35,7 @@ ReproducedTable TabulateFound(const std::vector<Tally>& tallies) {
          FormatFixed(interval.high, 3), Fixed(CalcAbsoluteQuantile(t.errors_m, 0.5), 3),
          Fixed(CalcAbsoluteQuantile(t.errors_m, 0.95), 3), Fixed(Share(t.covered, t.errors_m.size()), 2),
          Fixed(CalcAbsoluteQuantile(t.flow_errors_dB, 0.5), 1),
+         Fixed(CalcAbsoluteQuantile(t.flow_errors_dB, 0.95), 1),
          Fixed(Share(t.flow_covered, t.flow_errors_dB.size()), 2), std::to_string(t.false_alarms),
          FormatFixed(t.km, 1)});
   }
@@ -53,29 +54,15 @@ ReproducedTable TabulateFalseAlarms(const std::vector<Tally>& tallies) {
     sum->km += t.km;
     sum->false_alarms += t.false_alarms;
   }
-  ReproducedTable table{"False alarms", {"pipe", "locator", "km", "false alarms", "per km"}, {}};
-  for (const Tally& s : sums) {
-    table.rows.push_back({s.pipe, s.locator, FormatFixed(s.km, 1), std::to_string(s.false_alarms),
-                          s.km > 0 ? FormatFixed(s.false_alarms / s.km, 3) : "-"});
-  }
-  return table;
-}
-
-ReproducedTable TabulateFlows(const std::vector<Tally>& tallies) {
   ReproducedTable table{
-      "Pd of the matched filter against flow (by way of the SNR; -: outside the studied range)",
-      {"pipe", "bore mm", "bar", "L/min", "SNR dB", "Pd"},
-      {}};
-  for (const StudiedPipe& pipe : StudiedPipes()) {
-    for (const double pressure_bar : {1.0, 3.0, 6.0}) {
-      for (const double flow_L_min : {0.03, 0.1, 0.3, 1.0, 3.0}) {
-        const double snr_dB = CalcJetSnr_dB(pipe.survey, {flow_L_min * 1e-3 / 60, 1e5 * pressure_bar, 0});
-        const auto found = InterpolateFound(tallies, pipe.survey.pipe, "matched_filter", snr_dB);
-        table.rows.push_back({pipe.survey.pipe, FormatFixed(1000 * pipe.survey.bore_m, 1),
-                              FormatNumber(pressure_bar), FormatNumber(flow_L_min), FormatFixed(snr_dB, 1),
-                              Fixed(found, 2)});
-      }
-    }
+      "False alarms", {"pipe", "locator", "km", "false alarms", "per km", "95 % from", "to"}, {}};
+  for (const Tally& s : sums) {
+    const bool heard = s.km > 0;
+    const CountInterval count = CalcPoissonInterval(s.false_alarms);
+    table.rows.push_back({s.pipe, s.locator, FormatFixed(s.km, 1), std::to_string(s.false_alarms),
+                          heard ? FormatFixed(s.false_alarms / s.km, 3) : "-",
+                          heard ? FormatFixed(count.low / s.km, 3) : "-",
+                          heard ? FormatFixed(count.high / s.km, 3) : "-"});
   }
   return table;
 }

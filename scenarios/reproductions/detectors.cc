@@ -6,6 +6,7 @@
 
 #include "base/number.h"
 #include "scenarios/detectors/study.h"
+#include "scenarios/detectors/study_flow.h"
 #include "scenarios/detectors/study_text.h"
 #include "scenarios/output_file.h"
 #include "scenarios/reproduction.h"
@@ -120,7 +121,8 @@ ReproduceReport Study(const ReproduceOptions& options) {
   ReproduceReport report;
   report.tables.push_back(detectors::TabulateFound(tallies));
   report.tables.push_back(detectors::TabulateFalseAlarms(tallies));
-  report.tables.push_back(detectors::TabulateFlows(tallies));
+  const auto curves = detectors::CalcFlowCurves(tallies);
+  report.tables.push_back(detectors::TabulateFlows(curves));
   HoldTargets(tallies, report);
   HoldCoverage(tallies, report);
   HoldFalseAlarms(tallies, report);
@@ -128,6 +130,8 @@ ReproduceReport Study(const ReproduceOptions& options) {
     std::filesystem::create_directories(options.out);
     WriteTextFile(options.out / "detectors.csv", detectors::WriteStudyCsv(tallies));
     WriteTextFile(options.out / "detectors.svg", detectors::DrawStudySvg(tallies));
+    WriteTextFile(options.out / "detectors_flow.csv", detectors::WriteFlowCsv(curves));
+    WriteTextFile(options.out / "detectors_flow.svg", detectors::DrawFlowSvg(curves));
   }
   return report;
 }

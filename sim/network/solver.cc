@@ -105,14 +105,18 @@ bool HydraulicSolver::Iterate(HydraulicState& state, double relaxation, SolveRep
   return true;
 }
 
+/// Whether outlets flow by their laws. Under suction, as in a part that a closed link cuts off from all water
+/// but not from a customer, the law is no flow, and what the barrier against flow backwards lets in is
+/// allowed.
 bool HydraulicSolver::OutletsConverged(const HydraulicState& state) const {
   for (const Outlet& outlet : outlets_) {
     const double full = state.demand_m3_s[outlet.junction];
     const bool is_demand = outlet.kind == Outlet::Kind::kDemand;
     if (outlet.kind == Outlet::Kind::kEmitter || IsIdle(outlet, state)) continue;
     const double law = CalcOutletFlow_m3_s(outlet, state.head_m[outlet.junction], full);
-    const double allowed =
-        epanet::kOutflowTolerance_m3_s + (is_demand ? 0 : epanet::kOutflowRelativeTolerance * law);
+    const double suction_m = std::max(0.0, outlet.base_head_m - state.head_m[outlet.junction]);
+    const double allowed = epanet::kOutflowTolerance_m3_s + suction_m / epanet::kBarrierSlope_s_m2 +
+                           (is_demand ? 0 : epanet::kOutflowRelativeTolerance * law);
     if (std::abs(law - OutletFlow(outlet, state)) > allowed) return false;
   }
   return true;

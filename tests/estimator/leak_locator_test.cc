@@ -191,6 +191,29 @@ TEST(LeakLocator, AWayFromIronIntoPlasticIsHeardWithTemplatesOfBothSlow) {
   EXPECT_LT(leaks[1].sigma_m, 0.25 * leaks[0].sigma_m);
 }
 
+TEST(LeakLocator, TheCoarserLocatorsTooHearEachWallWithItsOwnWidthSlow) {
+  // a cell of iron's is 25 m wide and more: a roof of 4 m would be lost in it
+  SoundScene scene;
+  scene.length_m = 500;
+  scene.speed_m_s = 1;
+  scene.attenuation_dB_m_kHz = 0.12;
+  scene.second_from_m = 400;
+  scene.second_attenuation_dB_m_kHz = 3.2;
+  scene.leaks = {{450, 15}};
+  for (const char* kind : {"cfar_ratio", "wavelet_kurtosis"}) {
+    const auto locator = MakeLocator(kind, StartAlong({{400, kIron}, {500, PvcU()}}));
+    SoundRecord(scene, 3).Feed(*locator, 1600);
+    int in_plastic = 0;
+    for (const LeakEstimate& leak : locator->leaks()) {
+      if (leak.chainage_m < 400) continue;
+      ++in_plastic;
+      EXPECT_NEAR(leak.chainage_m, 450, 0.5) << kind;
+      EXPECT_LT(leak.sigma_m, 1) << kind;
+    }
+    EXPECT_EQ(in_plastic, 1) << kind;
+  }
+}
+
 TEST(LeakLocator, ALeakBesideATeeIsOneLeakAtItsPlace) {
   // behind the tee it is 3.52 dB weaker, in both bands alike
   for (const double leak_m : {11.0, 12.8}) {

@@ -4,6 +4,7 @@
 #include <sndfile.h>
 
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 
 #include "acoustics/audio_file.h"
@@ -94,6 +95,90 @@ TEST_F(Detect, FindsTheLeakOfARenderedPassageOnItsTrack) {
   EXPECT_TRUE(found.placed);
   EXPECT_NE(DrawDetectionsSvg(found).find("polyline"), std::string::npos);
   EXPECT_NE(WriteDetectionsJson(found).find("\"piperun.detect/1\""), std::string::npos);
+}
+
+TEST_F(Detect, AConstantSpeedWidensTheIntervalByWhatIsNotKnownOfIt) {
+  WriteSurvey(MakeSurvey());
+  DetectOptions options{folder_ / "audio.wav", Pipe(), {}, "matched_filter"};
+  const Detections exact = scenarios::Detect(options);
+  options.speed_sd_m_s = 0.02;
+  const Detections known = scenarios::Detect(options);
+  ASSERT_EQ(exact.leaks.size(), 1u);
+  ASSERT_EQ(known.leaks.size(), 1u);
+  // both errors are independent: variances add, the way's is (s_v t)^2 where the leak was passed
+  const double way_m = 0.02 * Seconds(known.leaks[0].t_cpa);
+  EXPECT_NEAR(known.leaks[0].sigma_m, std::hypot(exact.leaks[0].sigma_m, way_m), 0.02 * way_m);
+  EXPECT_NEAR(0.5 * (known.leaks[0].interval.high_m - known.leaks[0].interval.low_m), 1.96 * way_m,
+              0.05 * way_m);
+  EXPECT_NE(exact.interval_holds.find("taken as exact"), std::string::npos);
+  EXPECT_NE(known.interval_holds.find("known to 0.02 m/s"), std::string::npos);
+  options.track = folder_ / "track.csv";
+  EXPECT_NE(Refusal(options).find("third column"), std::string::npos);
+}
+
+TEST_F(Detect, ATracksOwnUncertaintyIsInTheInterval) {
+  WriteSurvey(MakeSurvey());
+  std::ifstream plain(folder_ / "track.csv");
+  std::ofstream uncertain(folder_ / "uncertain.csv");
+  std::string line;
+  std::getline(plain, line);
+  uncertain << line << ",chainage_sd_m\n";
+  while (std::getline(plain, line)) uncertain << line << ",0.7\n";
+  uncertain.close();
+  const Detections found =
+      scenarios::Detect({folder_ / "audio.wav", Pipe(), folder_ / "uncertain.csv", "matched_filter"});
+  ASSERT_EQ(found.leaks.size(), 1u);
+  EXPECT_NEAR(found.leaks[0].sigma_m, 0.7, 0.05);
+  std::ofstream(folder_ / "bad.csv") << "time_s,chainage_m,chainage_sd_m\n0,0,0\n1,1\n";
+  EXPECT_NE(Refusal({folder_ / "audio.wav", Pipe(), folder_ / "bad.csv", "matched_filter"}).find("'1,1'"),
+            std::string::npos);
+}
+
+TEST_F(Detect, AFlacFileSaysWhatTheWavSays) {
+  WriteSurvey(MakeSurvey());
+  SF_INFO info{};
+  SNDFILE* wav = sf_open((folder_ / "audio.wav").c_str(), SFM_READ, &info);
+  std::vector<int> samples(static_cast<std::size_t>(info.frames));
+  sf_readf_int(wav, samples.data(), info.frames);
+  sf_close(wav);
+  info.format = SF_FORMAT_FLAC | SF_FORMAT_PCM_24;
+  SNDFILE* flac = sf_open((folder_ / "audio.flac").c_str(), SFM_WRITE, &info);
+  sf_writef_int(flac, samples.data(), static_cast<sf_count_t>(samples.size()));
+  sf_close(flac);
+  const auto found = [&](const char* name) {
+    return scenarios::Detect({folder_ / name, Pipe(), folder_ / "track.csv", "matched_filter"});
+  };
+  const Detections of_wav = found("audio.wav"), of_flac = found("audio.flac");
+  ASSERT_EQ(of_flac.leaks.size(), 1u);
+  EXPECT_EQ(of_flac.leaks[0].chainage_m, of_wav.leaks[0].chainage_m);
+  EXPECT_EQ(of_flac.leaks[0].interval.low_m, of_wav.leaks[0].interval.low_m);
+}
+
+TEST_F(Detect, ALeakBesideAMappedValveIsFlaggedAndADigPointLiesOnEarth) {
+  WriteSurvey(MakeSurvey());
+  std::ofstream(folder_ / "pipe.yaml")
+      << "material: pvc_u\ndiameter_mm: 147.5\nwall_thickness_mm: 7.5\n"
+         "fittings: [{id: V1, kind: valve, chainage_m: 23.9}]\n"
+         "line_m: [[0, 0, 0], [0, 60, 0]]\norigin: {latitude_deg: 50, longitude_deg: 8}\n";
+  const DetectPipe pipe = LoadDetectPipe(folder_ / "pipe.yaml");
+  const Detections found =
+      scenarios::Detect({folder_ / "audio.wav", pipe, folder_ / "track.csv", "matched_filter"});
+  ASSERT_EQ(found.leaks.size(), 1u);
+  EXPECT_EQ(found.leaks[0].at, "valve V1");
+  EXPECT_LT(found.leaks[0].confidence, 0.2);
+  EXPECT_NE(WriteDetectionsJson(found).find("\"at\": \"valve V1\""), std::string::npos);
+  EXPECT_NE(WriteDetectionsCsv(found).find(",valve V1\n"), std::string::npos);
+  // the pipe runs north from 50 N, where a degree is 111229 m long (WGS 84: 111132.95 - 559.85 cos 2 phi
+  // + 1.175 cos 4 phi)
+  const std::string geojson = WriteDetectionsGeoJson(found);
+  const std::size_t at = geojson.find("\"coordinates\": [") + 16;
+  double longitude_deg = 0, latitude_deg = 0;
+  ASSERT_EQ(std::sscanf(geojson.c_str() + at, " [ %lf , %lf", &longitude_deg, &latitude_deg), 2) << geojson;
+  EXPECT_NEAR(longitude_deg, 8, 1e-8);
+  EXPECT_NEAR((latitude_deg - 50) * 111229, found.leaks[0].chainage_m, 0.002);
+  const Detections nowhere =
+      scenarios::Detect({folder_ / "audio.wav", Pipe(), folder_ / "track.csv", "matched_filter"});
+  EXPECT_THROW(WriteDetectionsGeoJson(nowhere), InputError);
 }
 
 TEST_F(Detect, WithoutAWaySaysTimesOnly) {

@@ -6,6 +6,7 @@
 
 #include "acoustics/pipe_wave.h"
 #include "scenarios/detectors/slow_drift.h"
+#include "scenarios/detectors/study_flow.h"
 #include "scenarios/detectors/study_text.h"
 
 namespace piperun::scenarios::detectors {
@@ -107,6 +108,53 @@ TEST(WilsonInterval, FollowsTheTextbook) {
   EXPECT_NEAR(interval.low, 0.4902, 1e-4);
   EXPECT_NEAR(interval.high, 0.9433, 1e-4);
   EXPECT_EQ(CalcWilsonInterval(0, 0).high, 1);
+}
+
+TEST(PoissonInterval, FollowsGarwoodsTable) {
+  // Garwood 1936, Table 1, 95 %: 0: 0 to 3.689; 1: 0.0253 to 5.572; 10: 4.795 to 18.39
+  EXPECT_EQ(CalcPoissonInterval(0).low, 0);
+  EXPECT_NEAR(CalcPoissonInterval(0).high, 3.689, 5e-4);
+  EXPECT_NEAR(CalcPoissonInterval(1).low, 0.0253, 5e-5);
+  EXPECT_NEAR(CalcPoissonInterval(1).high, 5.572, 5e-4);
+  EXPECT_NEAR(CalcPoissonInterval(10).low, 4.795, 5e-4);
+  EXPECT_NEAR(CalcPoissonInterval(10).high, 18.391, 5e-4);
+}
+
+/// Found from -6 dB (none) to 10 dB (all), a straight line in between.
+std::vector<Tally> StraightLine() {
+  Tally low, high;
+  low.pipe = high.pipe = "p";
+  low.locator = high.locator = "l";
+  low.snr_dB = -6;
+  high.snr_dB = 10;
+  low.leaks = high.leaks = 10;
+  high.found = 10;
+  return {low, high};
+}
+
+TEST(BoundFound, IsExactWithinTheCellsAndBoundedOutside) {
+  auto tallies = StraightLine();
+  EXPECT_NEAR(BoundFound(tallies, "p", "l", 2).low, 0.5, 1e-12);
+  EXPECT_NEAR(BoundFound(tallies, "p", "l", 2).high, 0.5, 1e-12);
+  tallies[0].found = 2;
+  tallies[1].found = 9;
+  EXPECT_EQ(BoundFound(tallies, "p", "l", -7).low, 0);
+  EXPECT_NEAR(BoundFound(tallies, "p", "l", -7).high, 0.2, 1e-12);
+  EXPECT_NEAR(BoundFound(tallies, "p", "l", 11).low, 0.9, 1e-12);
+  EXPECT_EQ(BoundFound(tallies, "p", "l", 11).high, 1);
+  EXPECT_EQ(BoundFound(tallies, "q", "l", 2).high - BoundFound(tallies, "q", "l", 2).low, 1);
+}
+
+TEST(BoundFound, AtAnyLoudnessIsTheMeanOverTheNormalDistribution) {
+  // E clamp((X + 6)/16, 0, 1), X normal about 5 dB with 7.5 dB: (G(11) - G(-5))/16,
+  // G(a) = a Phi(a/s) + s phi(a/s) the mean of the positive part of a normal about a
+  const auto g = [](double a) {
+    const double u = a / 7.5;
+    return a * 0.5 * std::erfc(-u / std::sqrt(2.0)) + 7.5 * std::exp(-0.5 * u * u) / std::sqrt(2 * M_PI);
+  };
+  const ShareInterval found = BoundFoundAtAnyLoudness(StraightLine(), "p", "l", 5);
+  EXPECT_NEAR(found.low, (g(11) - g(-5)) / 16, 1e-4);
+  EXPECT_NEAR(found.high, found.low, 1e-12);  // nothing below, all above: nothing is left open
 }
 
 TEST(InterpolateFound, LiesBetweenItsCells) {

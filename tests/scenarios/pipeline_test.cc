@@ -264,5 +264,51 @@ TEST(Run, HydraulicsThatDoNotConvergeAreAStatusOfARunFolderThatIsKept) {
   EXPECT_EQ(LoadScenario((folder / "run/scenario.yaml").string()).network.inp_text, kStiff);
 }
 
+/// The neighbourhood with its dead end S2 closed at B1, its tap wanting `demand_L_s`.
+Scenario MakeClosedDeadEnd(const std::string& demand_L_s) {
+  Scenario scenario =
+      MakeNeighbourhood({"leaks=[{id: L1, pipe: S2, s_m: 30, hole_diameter_mm: 2}]", "mission.time_limit_s=2",
+                         "sensors={hydrophone0: {kind: hydrophone, rate_Hz: 16000}}"});
+  std::string& inp = scenario.network.inp_text;
+  const auto replace = [&](const std::string& line, const std::string& by) {
+    const std::size_t at = inp.find(line);
+    Demand(at != std::string::npos, "the line is in the file");
+    inp.replace(at, line.size(), by);
+  };
+  replace(" S2     B1      TAP1    75.00   100   0.01       0      Open",
+          " S2     B1      TAP1    75.00   100   0.01       0      Closed");
+  replace(" TAP1      13.00     0.70", " TAP1      13.00     " + demand_L_s);
+  return scenario;
+}
+
+TEST(Pipeline, ALeakOnAClosedDeadPipeHasNoPressureAndNoFlow) {
+  for (const char* demand_L_s : {"0", "0.70"}) {
+    const Pipeline pipeline = Build(MakeClosedDeadEnd(demand_L_s));
+    ASSERT_EQ(pipeline.leak_states.size(), 1u);
+    EXPECT_EQ(pipeline.leak_states[0].flow_m3_s, 0);
+    EXPECT_EQ(pipeline.leak_states[0].pressure_drop_Pa, 0);
+    EXPECT_EQ(FlowIn(pipeline, "S2", 10), 0);
+    EXPECT_EQ(FlowIn(pipeline, "S2", 60), 0);
+    // the rest of the network carries its demands and nothing for the tap
+    EXPECT_NEAR(FlowIn(pipeline, "S1", 30), (0.40 + 0.55) * kLitre_m3, 1e-8) << demand_L_s;
+  }
+}
+
+TEST(Run, ALeakOnAClosedDeadPipeIsSilentAndTheRunSaysSo) {
+  const TemporaryFolder folder;
+  const RunResult dead = RunInto(MakeClosedDeadEnd("0.70"), folder / "dead");
+  EXPECT_EQ(dead.status, "time_limit");
+  ASSERT_EQ(dead.warnings.size(), 2u);
+  EXPECT_EQ(dead.warnings[0], "node TAP1: closed off from all water: its demand is not served");
+  EXPECT_EQ(dead.warnings[1], "leak L1: closed dead pipe with no pressure: no sound");
+  EXPECT_NE(FileText(folder / "dead/run.json").find(dead.warnings[1]), std::string::npos);
+  Scenario without = MakeClosedDeadEnd("0.70");
+  without.leaks.clear();
+  RunInto(without, folder / "without");
+  const std::string audio = "mav0/hydrophone0/audio.wav";
+  EXPECT_TRUE(FileText(folder / "dead" / audio) == FileText(folder / "without" / audio))
+      << "the leak is heard";
+}
+
 }  // namespace
 }  // namespace piperun::scenarios

@@ -34,6 +34,15 @@ TEST(ScoreLeaks, CountsASecondReportOfALeakAsFalseAlarm) {
   EXPECT_TRUE(score.missed.empty());
 }
 
+TEST(ScoreLeaks, FalseAlarmsAtFittingsCountApart) {
+  auto valve = At(20), leaking_valve = At(5.1);
+  valve.at = leaking_valve.at = "valve V1";
+  const LeakScore score = ScoreLeaks({valve, leaking_valve, At(30)}, {Leak("A", 5.0)}, 2);
+  EXPECT_EQ(score.false_alarms, 1);
+  EXPECT_EQ(score.false_alarms_at_fittings, 1);
+  EXPECT_EQ(score.leaks[1].match, "A");  // a flag loses no leak
+}
+
 TEST(ScoreLeaks, WithoutReportsMissesAll) {
   const LeakScore score = ScoreLeaks({}, {Leak("A", 5), Leak("B", 6)}, 2);
   EXPECT_EQ(score.missed.size(), 2u);

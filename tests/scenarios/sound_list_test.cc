@@ -103,15 +103,6 @@ bool Says(const std::vector<std::string>& notes, const std::string& what) {
                      [&](const std::string& note) { return note.find(what) != std::string::npos; });
 }
 
-TEST(SoundList, ALeakThatNoPressureDrivesIsNoted) {
-  const Scenario scenario = MakeSmallScenario();
-  const auto assembly = Assemble(scenario);
-  EXPECT_TRUE(assembly->pipeline->notes.empty());
-  Pipeline dead = *assembly->pipeline;
-  dead.leak_states = {{0, 0}};  // as in a stretch that is shut off at both ends
-  EXPECT_TRUE(Says(AddSounds(scenario, dead, assembly->scene), "leak 'L1' is silent"));
-}
-
 TEST(SoundList, ADrawOffWithoutPressureIsSilentAndTheRunSaysSo) {
   const auto assembly = Assemble(WithSounds("  - {id: T, pipe: P1, s_m: 5, kind: draw_off}\n",
                                             {"leaks=[]", "flow.inlet_pressure_Pa=0"}));

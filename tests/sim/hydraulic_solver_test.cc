@@ -9,6 +9,7 @@
 
 #include "base/check.h"
 #include "base/random.h"
+#include "sim/network/drained_part.h"
 #include "sim/network/head_loss.h"
 #include "sim/network/inp_reader.h"
 #include "sim/network/pipe_leak.h"
@@ -432,6 +433,47 @@ TEST(HydraulicSolver, CutOffJunctionsAreNamed) {
       "[JUNCTIONS]\nA 0 1\nB 0 0\n[RESERVOIRS]\nR 10\n[PIPES]\nP R A 100 100 100\nQ A B 100 100 100 0 "
       "Closed\n");
   EXPECT_EQ(FindSupplied(s.model, s.state), (std::vector<bool>{true, false, true}));
+}
+
+// A reservoir at 10 m feeds A, which takes 1 L/s; behind a closed pipe lie B (demand given) and C.
+Solved SolveCutOff(const std::string& demand_L_s, double leak_m25_s) {
+  HydraulicModel model = ReadInp(
+      "[JUNCTIONS]\nA 0 1\nB 2 " + demand_L_s +
+          "\nC 3 0\n[RESERVOIRS]\nR 10\n[PIPES]\nP R A 100 100 100\n"
+          "Q A B 100 100 100 0 Closed\nS B C 100 100 100\n[OPTIONS]\nUnits LPS\nAccuracy 1e-6\n[END]\n",
+      "test.inp");
+  model.junctions[1].leak.fixed_m25_s = leak_m25_s;
+  return SolveModel(std::move(model));
+}
+
+TEST(HydraulicSolver, ALeakBehindAClosedPipeRunsDry) {
+  // 2 mm: 0.6 pi/4 d^2 sqrt(2 g)
+  const double leak_m25_s = 0.6 * pi / 4 * 0.002 * 0.002 * std::sqrt(2 * kGravity_m_s2);
+  for (const char* demand_L_s : {"0", "0.7"}) {
+    Solved s = SolveCutOff(demand_L_s, leak_m25_s);
+    ASSERT_TRUE(s.report.converged()) << demand_L_s << ": " << Describe(s.report, s.model);
+    const std::vector<bool> drained = FindDrained(s.model, s.state);
+    EXPECT_EQ(drained, (std::vector<bool>{false, true, true}));
+    const bool wants_water = std::string(demand_L_s) != "0";
+    EXPECT_EQ(DropDrainedDemands(drained, s.state), wants_water ? std::vector<int>{1} : std::vector<int>{});
+    HydraulicSolver solver(s.model);
+    ASSERT_TRUE(solver.Solve(s.state).converged());
+    // what is left of the way: 1 L/s to A, none of it through the closed pipe but its trickle
+    EXPECT_NEAR(s.Flow_L_s("P"), 1, 1e-5) << demand_L_s;
+    SettleDrained(s.model, drained, s.state);
+    EXPECT_EQ(s.Flow_L_s("Q"), 0);
+    EXPECT_EQ(s.Flow_L_s("S"), 0);
+    EXPECT_EQ(s.Head_m("B"), 2);
+    EXPECT_EQ(s.Head_m("C"), 3);
+    EXPECT_EQ(s.state.fixed_leak_m3_s[1], 0);
+  }
+}
+
+TEST(HydraulicSolver, WaterShutInWithNoWayOutIsNotDrained) {
+  const Solved s = SolveCutOff("0", 0);
+  EXPECT_EQ(FindDrained(s.model, s.state), (std::vector<bool>{false, false, false}));
+  const Solved fed = SolveCutOff("-0.7", 1e-6);
+  EXPECT_EQ(FindDrained(fed.model, fed.state), (std::vector<bool>{false, false, false}));
 }
 
 TEST(HydraulicSolver, AWarmStartFromTheSolutionTakesOneIteration) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "base/number.h"
 #include "estimator/leak_locator.h"
@@ -15,7 +16,8 @@ namespace piperun::tools {
 namespace {
 
 struct DetectArguments {
-  std::string audio, pipe, track, locator, out;
+  std::string audio, pipe, track, locator, out, geojson;
+  std::optional<double> speed_sd_m_s;
 };
 
 /// Flow in L/min, `sigmas` of its standard deviations away.
@@ -26,15 +28,17 @@ std::string FlowText(const estimator::LeakEstimate& leak, double sigmas) {
 
 std::string DescribeDetections(const scenarios::Detections& detections) {
   if (detections.leaks.empty()) return "no leak found\n";
-  Table table({"time_s", "chainage_m", "95%_from", "to", "confidence", "flow_L/min", "95%_from", "to"});
+  Table table({"time_s", "chainage_m", "95%_from", "to", "confidence", "flow_L/min", "95%_from", "to", "at"});
   for (const estimator::LeakEstimate& leak : detections.leaks) {
     table.Add({FormatFixed(Seconds(leak.t_cpa), 2), detections.placed ? FormatFixed(leak.chainage_m, 2) : "-",
                detections.placed ? FormatFixed(leak.interval.low_m, 2) : "-",
                detections.placed ? FormatFixed(leak.interval.high_m, 2) : "-",
                FormatFixed(leak.confidence, 3), FlowText(leak, 0), FlowText(leak, -1.96),
-               FlowText(leak, 1.96)});
+               FlowText(leak, 1.96), leak.at.value_or("-")});
   }
-  return table.Text();
+  std::string text = table.Text();
+  if (detections.placed) text += "intervals hold " + detections.interval_holds + "\n";
+  return text;
 }
 
 void Describe(const scenarios::Detections& detections) {
@@ -59,6 +63,7 @@ int Detect(const DetectArguments& arguments, const Display& display) {
   options.audio = arguments.audio;
   options.track = arguments.track;
   options.locator = arguments.locator;
+  options.speed_sd_m_s = arguments.speed_sd_m_s;
   if (!arguments.pipe.empty()) options.pipe = scenarios::LoadDetectPipe(arguments.pipe);
   const scenarios::Detections detections = scenarios::Detect(options);
   const std::string json = scenarios::WriteDetectionsJson(detections);
@@ -69,6 +74,8 @@ int Detect(const DetectArguments& arguments, const Display& display) {
     scenarios::WriteTextFile(out / "detections.csv", scenarios::WriteDetectionsCsv(detections));
     scenarios::WriteTextFile(out / "detections.svg", scenarios::DrawDetectionsSvg(detections));
   }
+  if (!arguments.geojson.empty())
+    scenarios::WriteTextFile(arguments.geojson, scenarios::WriteDetectionsGeoJson(detections));
   if (display.json) {
     fmt::print("{}", json);
   } else if (!display.quiet) {
@@ -87,10 +94,18 @@ void AddDetectCommand(CLI::App& app, Display& display, int& exit_code) {
                    "Sound file of one channel: WAV, FLAC, whatever libsndfile reads")
       ->required();
   command->add_option("--pipe", arguments->pipe,
-                      "YAML file: material, diameter_m, wall_thickness_m; speed_m_s (0.5), start_chainage_m, "
-                      "length_m, full_scale_Pa (1000), locator {kind, ..}");
-  command->add_option("--track", arguments->track,
-                      "Where the ball was: CSV with header time_s,chainage_m (otherwise constant speed)");
+                      "YAML file: material, diameter_m, wall_thickness_m; speed_m_s (0.5), speed_sd_m_s, "
+                      "start_chainage_m, length_m, full_scale_Pa (1000), fittings [{id, kind, chainage_m}], "
+                      "line_m, origin, locator {kind, ..}");
+  command->add_option(
+      "--track", arguments->track,
+      "Where the ball was: CSV with header time_s,chainage_m[,chainage_sd_m] (otherwise constant "
+      "speed)");
+  command->add_option(
+      "--speed-sd", arguments->speed_sd_m_s,
+      "How well the constant speed is known, m/s, standard deviation: intervals then hold it");
+  command->add_option("--geojson", arguments->geojson,
+                      "File for dig points, GeoJSON; the pipe file gives line_m and origin");
   command->add_option("--locator", arguments->locator, "Locator, default parameters: " + ListLocators());
   command->add_option("-o,--out", arguments->out, "Folder for detections.csv, .json and .svg");
   command->callback([arguments, &display, &exit_code] { exit_code = Detect(*arguments, display); });
