@@ -18,7 +18,7 @@ Complex CalcHankel(double order, double x) {
   return {std::cyl_bessel_j(order, x), -std::cyl_neumann(order, x)};
 }
 
-/// g(q) r of the docstring's g; its limit for q = 0 is never taken, as q = 0 multiplies or is one frequency.
+/// g(q) of the docstring, q other than 0.
 Complex CalcRadialRatio_m(double q_1_m2, double radius_m) {
   const double kappa_1_m = std::sqrt(std::abs(q_1_m2)), x = kappa_1_m * radius_m;
   if (q_1_m2 > 0) return CalcHankel(0, x) / (kappa_1_m * CalcHankel(1, x));

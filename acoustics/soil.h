@@ -22,13 +22,13 @@ struct Soil {
 ///
 /// k_d = omega / sqrt((B + 4G/3)/rho) and k_s = omega / sqrt(G/rho) of the soil's two waves, H of the second
 /// kind: a wave slower than the pipe's is radiated (Im K_s > 0), a faster one clings to the pipe. From the
-/// displacement potentials of an elastic space, as in Muggleton, Brennan & Linford, J. Sound Vib. 272, 663
-/// (2004). At rest it is 2 G/r, with a radiated part that grows with frequency.
+/// displacement potentials of an elastic space, as Muggleton, Brennan & Pinnington, J. Sound Vib. 249, 939
+/// (2002) load a pipe. At rest it is 2 G/r, with a radiated part that grows with frequency.
 /// Range: omega > 0; k real, so for pipe waves that lose little per wavelength.
 std::complex<double> CalcSoilStiffness_Pa_m(const Soil& soil, double radius_m, double omega_rad_s,
                                             double k_rad_m);
 
-/// Throws InputError, at `key_path`.name, for a modulus or density that is not a positive number.
+/// Throws InputError for a modulus or density that is not a positive number.
 void RequireSoil(const Soil& soil);
 
 }  // namespace piperun::acoustics
