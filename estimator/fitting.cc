@@ -30,6 +30,7 @@ std::vector<std::pair<int, double>> PlaceNodes(const Network& network, const Rou
 std::optional<double> FindChainage_m(const Network& network, const Route& route, const Fitting& fitting) {
   if (const auto on_route_m = route.Chainage(fitting.pipe, fitting.s_m)) return on_route_m;
   const Pipe& pipe = network.pipe(fitting.pipe);
+  if (fitting.s_m > pipe.length_m) return std::nullopt;  // beyond what the map holds of it
   for (const auto& [node, chainage_m] : PlaceNodes(network, route)) {
     if (node == pipe.from && fitting.s_m <= kLongestBranch_m) return chainage_m;
     if (node == pipe.to && pipe.length_m - fitting.s_m <= kLongestBranch_m) return chainage_m;
