@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "base/check.h"
 
@@ -85,8 +86,9 @@ std::vector<PlacedFitting> PlaceFittings(const Network& network, const Route& ro
     const std::string& id = network.nodes()[static_cast<std::size_t>(node)].id;
     placed.push_back({"tee " + id, CalcFittingPrior(FittingKind::kTee), chainage_m});
   }
-  std::stable_sort(placed.begin(), placed.end(),
-                   [](const auto& a, const auto& b) { return a.chainage_m < b.chainage_m; });
+  std::sort(placed.begin(), placed.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.chainage_m, a.label) < std::tie(b.chainage_m, b.label);
+  });
   return placed;
 }
 
