@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "base/check.h"
 
@@ -30,6 +31,7 @@ std::vector<std::pair<int, double>> PlaceNodes(const Network& network, const Rou
 std::optional<double> FindChainage_m(const Network& network, const Route& route, const Fitting& fitting) {
   if (const auto on_route_m = route.Chainage(fitting.pipe, fitting.s_m)) return on_route_m;
   const Pipe& pipe = network.pipe(fitting.pipe);
+  if (fitting.s_m > pipe.length_m) return std::nullopt;  // beyond what the map holds of it
   for (const auto& [node, chainage_m] : PlaceNodes(network, route)) {
     if (node == pipe.from && fitting.s_m <= kLongestBranch_m) return chainage_m;
     if (node == pipe.to && pipe.length_m - fitting.s_m <= kLongestBranch_m) return chainage_m;
@@ -84,8 +86,9 @@ std::vector<PlacedFitting> PlaceFittings(const Network& network, const Route& ro
     const std::string& id = network.nodes()[static_cast<std::size_t>(node)].id;
     placed.push_back({"tee " + id, CalcFittingPrior(FittingKind::kTee), chainage_m});
   }
-  std::stable_sort(placed.begin(), placed.end(),
-                   [](const auto& a, const auto& b) { return a.chainage_m < b.chainage_m; });
+  std::sort(placed.begin(), placed.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.chainage_m, a.label) < std::tie(b.chainage_m, b.label);
+  });
   return placed;
 }
 

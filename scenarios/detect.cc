@@ -5,7 +5,6 @@
 #include <cmath>
 #include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "acoustics/sound_file.h"
 #include "base/check.h"
@@ -13,7 +12,6 @@
 #include "base/number.h"
 #include "estimator/band_frames.h"
 #include "estimator/leak_locator.h"
-#include "scenarios/dig_points.h"
 #include "scenarios/materials.h"
 #include "scenarios/network_params.h"
 #include "scenarios/yaml_document.h"
@@ -25,6 +23,7 @@ constexpr std::size_t kBlock = 1024;
 constexpr double kCounts = 8388608;  // per full scale: 24 bits
 constexpr double kMostClipped = 0.01;
 constexpr double kNav_s = 0.05;
+constexpr double kBendRadius_diameters = 1.5;  // of the drawn line's corners
 constexpr std::size_t kMostLevels = 2000;
 
 struct TrackRow {
@@ -132,37 +131,52 @@ class Way {
   double start_m_ = 0, speed_m_s_ = 0.5, speed_sd_m_s_ = 0;
 };
 
-estimator::EstimatorStart MakeStart(const DetectPipe& pipe, double length_m) {
+/// The pipe's axis: as drawn, or a straight line eastwards.
+std::vector<Vector3d> MakeLine_W(const DetectPipe& pipe, double length_m) {
+  if (pipe.line_m.empty()) return {{0, 0, 0}, {length_m, 0, 0}};
+  std::vector<Vector3d> line_W;
+  for (std::size_t i = 0; i + 2 < pipe.line_m.size(); i += 3)
+    line_W.emplace_back(pipe.line_m[i], pipe.line_m[i + 1], pipe.line_m[i + 2]);
+  if (line_W.size() < 2) throw InputError("one point is no line; give two or more", "line_m");
+  return line_W;
+}
+
+Network MakeDetectNetwork(const DetectPipe& pipe, double length_m) {
+  const std::vector<Vector3d> line_W = MakeLine_W(pipe, length_m);
+  const WallParams& wall = pipe.wall;
   PipeSpec spec;
   spec.id = "P1";
   spec.from = "A";
   spec.to = "B";
   spec.diameter_m = pipe.diameter_m;
   spec.wall_thickness_m = pipe.wall_thickness_m;
-  spec.material = {pipe.material,
-                   pipe.wall.young_modulus_Pa,
-                   pipe.wall.loss_factor,
-                   pipe.wall.poisson_ratio,
-                   pipe.wall.density_kg_m3,
-                   pipe.wall.roughness_m,
-                   pipe.wall.relative_permeability};
-  Vector3d begin_W = Vector3d::Zero(), end_W{length_m, 0, 0};
-  if (!pipe.line_m.empty()) {
-    std::vector<Vector3d> line_W;
-    for (std::size_t i = 0; i + 2 < pipe.line_m.size(); i += 3)
-      line_W.emplace_back(pipe.line_m[i], pipe.line_m[i + 1], pipe.line_m[i + 2]);
-    begin_W = line_W.front();
-    end_W = line_W.back();
-    spec.vertices_m.assign(line_W.begin() + 1, line_W.end() - 1);
-    spec.length_m = pipe.length_m.value_or(0);
-  }
-  Network network({{"A", begin_W}, {"B", end_W}}, {spec});
-  Route route(network, {{0, false}});
+  spec.vertices_m.assign(line_W.begin() + 1, line_W.end() - 1);
+  spec.bend_radius_m = kBendRadius_diameters * pipe.diameter_m;
+  spec.fit_bends = true;
+  spec.length_m = pipe.length_m.value_or(0);
+  spec.material = {pipe.material,      wall.young_modulus_Pa, wall.loss_factor,          wall.poisson_ratio,
+                   wall.density_kg_m3, wall.roughness_m,      wall.relative_permeability};
+  return Network({{"A", line_W.front()}, {"B", line_W.back()}}, {spec});
+}
+
+std::vector<estimator::Fitting> ListFittings(const DetectPipe& pipe) {
   std::vector<estimator::Fitting> fittings;
-  for (const DetectFitting& fitting : pipe.fittings)
+  for (const DetectFitting& fitting : pipe.fittings) {
+    if (pipe.length_m && fitting.chainage_m > *pipe.length_m) {
+      throw InputError("'" + fitting.id + "' lies at " + FormatNumber(fitting.chainage_m) +
+                           " m; allowed: [0, " + FormatNumber(*pipe.length_m) + "] m, the pipe's length_m",
+                       "fittings");
+    }
     fittings.push_back({FittingKindOf(fitting.kind), fitting.id, 0, fitting.chainage_m});
+  }
+  return fittings;
+}
+
+estimator::EstimatorStart MakeStart(const DetectPipe& pipe, double length_m) {
+  Network network = MakeDetectNetwork(pipe, length_m);
+  Route route(network, {{0, false}});
   estimator::EstimatorStart start;
-  start.map = estimator::RouteMap{std::move(network), std::move(route), std::move(fittings)};
+  start.map = estimator::RouteMap{std::move(network), std::move(route), ListFittings(pipe)};
   return start;
 }
 
@@ -371,55 +385,6 @@ Detections Detect(const DetectOptions& options) {
   if (options.pipe && !options.pipe->line_m.empty()) PlaceOnEarth(*options.pipe, *start.map, result);
   result.levels = levels.Take();
   return result;
-}
-
-std::string WriteDetectionsJson(const Detections& detections) {
-  using Json = nlohmann::ordered_json;
-  Json leaks = Json::array();
-  for (const estimator::LeakEstimate& leak : detections.leaks) {
-    leaks.push_back(
-        {{"time_s", Seconds(leak.t_cpa)},
-         {"chainage_m", detections.placed ? Json(leak.chainage_m) : Json()},
-         {"sigma_m", detections.placed ? Json(leak.sigma_m) : Json()},
-         {"interval_m",
-          detections.placed ? Json(Json::array({leak.interval.low_m, leak.interval.high_m})) : Json()},
-         {"confidence", leak.confidence},
-         {"at", leak.at ? Json(*leak.at) : Json()},
-         {"flow_m3_s", leak.flow_m3_s ? Json(*leak.flow_m3_s) : Json()},
-         {"flow_sigma_dB", leak.flow_m3_s ? Json(leak.flow_sigma_dB) : Json()}});
-  }
-  const Json json{{"schema", "piperun.detect/1"},
-                  {"audio", detections.audio},
-                  {"locator", detections.locator},
-                  {"rate_Hz", detections.rate_Hz},
-                  {"duration_s", detections.duration_s},
-                  {"full_scale_samples", detections.full_scale_samples},
-                  {"interval_holds", detections.placed ? Json(detections.interval_holds) : Json()},
-                  {"detections", leaks}};
-  return json.dump(2) + "\n";
-}
-
-std::string WriteDetectionsCsv(const Detections& detections) {
-  std::string csv = "time_s,chainage_m,sigma_m,confidence,flow_m3_s,flow_sigma_dB,at\n";
-  for (const estimator::LeakEstimate& leak : detections.leaks) {
-    const std::string place =
-        detections.placed ? FormatNumber(leak.chainage_m) + "," + FormatNumber(leak.sigma_m) : ",";
-    csv += FormatNumber(Seconds(leak.t_cpa)) + "," + place + "," + FormatNumber(leak.confidence) + ",";
-    csv += leak.flow_m3_s ? FormatNumber(*leak.flow_m3_s) + "," + FormatNumber(leak.flow_sigma_dB) : ",";
-    csv += "," + leak.at.value_or("") + "\n";
-  }
-  return csv;
-}
-
-std::string WriteDetectionsGeoJson(const Detections& detections) {
-  if (!detections.origin) {
-    throw InputError(
-        "the pipe file says nothing of where on earth the pipe lies; give it line_m (rows of east, north, "
-        "up) "
-        "and origin {latitude_deg, longitude_deg}",
-        "--geojson");
-  }
-  return WriteDigPoints(*detections.origin, detections.leaks);
 }
 
 }  // namespace piperun::scenarios

@@ -159,7 +159,7 @@ TEST_F(Detect, ALeakBesideAMappedValveIsFlaggedAndADigPointLiesOnEarth) {
   std::ofstream(folder_ / "pipe.yaml")
       << "material: pvc_u\ndiameter_mm: 147.5\nwall_thickness_mm: 7.5\n"
          "fittings: [{id: V1, kind: valve, chainage_m: 23.9}]\n"
-         "line_m: [[0, 0, 0], [0, 60, 0]]\norigin: {latitude_deg: 50, longitude_deg: 8}\n";
+         "line_m: [[0, 0, 0], [0, 40, 0], [15, 53, 0]]\norigin: {latitude_deg: 50, longitude_deg: 8}\n";
   const DetectPipe pipe = LoadDetectPipe(folder_ / "pipe.yaml");
   const Detections found =
       scenarios::Detect({folder_ / "audio.wav", pipe, folder_ / "track.csv", "matched_filter"});
@@ -173,7 +173,7 @@ TEST_F(Detect, ALeakBesideAMappedValveIsFlaggedAndADigPointLiesOnEarth) {
   const std::string geojson = WriteDetectionsGeoJson(found);
   const std::size_t at = geojson.find("\"coordinates\": [") + 16;
   double longitude_deg = 0, latitude_deg = 0;
-  ASSERT_EQ(std::sscanf(geojson.c_str() + at, " [ %lf , %lf", &longitude_deg, &latitude_deg), 2) << geojson;
+  ASSERT_EQ(std::sscanf(geojson.c_str() + at, " %lf , %lf", &longitude_deg, &latitude_deg), 2) << geojson;
   EXPECT_NEAR(longitude_deg, 8, 1e-8);
   EXPECT_NEAR((latitude_deg - 50) * 111229, found.leaks[0].chainage_m, 0.002);
   const Detections nowhere =

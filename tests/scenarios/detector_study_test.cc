@@ -110,14 +110,21 @@ TEST(WilsonInterval, FollowsTheTextbook) {
   EXPECT_EQ(CalcWilsonInterval(0, 0).high, 1);
 }
 
-TEST(PoissonInterval, FollowsGarwoodsTable) {
-  // Garwood 1936, Table 1, 95 %: 0: 0 to 3.689; 1: 0.0253 to 5.572; 10: 4.795 to 18.39
+/// P(X <= k) for X Poisson of that mean.
+double CalcPoissonTail(int k, double mean) {
+  double term = std::exp(-mean), sum = term;
+  for (int i = 1; i <= k; ++i) sum += term *= mean / i;
+  return sum;
+}
+
+TEST(PoissonInterval, LeavesTwoAndAHalfPercentOnEachSide) {
   EXPECT_EQ(CalcPoissonInterval(0).low, 0);
-  EXPECT_NEAR(CalcPoissonInterval(0).high, 3.689, 5e-4);
-  EXPECT_NEAR(CalcPoissonInterval(1).low, 0.0253, 5e-5);
-  EXPECT_NEAR(CalcPoissonInterval(1).high, 5.572, 5e-4);
-  EXPECT_NEAR(CalcPoissonInterval(10).low, 4.795, 5e-4);
-  EXPECT_NEAR(CalcPoissonInterval(10).high, 18.391, 5e-4);
+  EXPECT_NEAR(CalcPoissonInterval(0).high, -std::log(0.025), 1e-9);
+  for (const int k : {1, 4, 10, 60}) {
+    const CountInterval interval = CalcPoissonInterval(k);
+    EXPECT_NEAR(CalcPoissonTail(k, interval.high), 0.025, 1e-9) << k;
+    EXPECT_NEAR(1 - CalcPoissonTail(k - 1, interval.low), 0.025, 1e-9) << k;
+  }
 }
 
 /// Found from -6 dB (none) to 10 dB (all), a straight line in between.
