@@ -5,6 +5,20 @@
 
 namespace piperun::estimator {
 
+void AttitudeEskf::AlignTilt(const Vector3d& f_S_m_s2) {
+  AttitudeKalman::AlignTilt(f_S_m_s2);
+  acceleration_W_m_s2_.setZero();
+  Matrix3d from_tilt = Matrix3d::Zero();
+  from_tilt(0, 1) = g_m_s2_;
+  from_tilt(1, 0) = -g_m_s2_;
+  const Matrix3d P_at = from_tilt * Covariance_W_rad2();
+  P_.bottomRows<3>().setZero();
+  P_.rightCols<3>().setZero();
+  P_.bottomLeftCorner<3, 3>() = P_at;
+  P_.topRightCorner<3, 3>() = P_at.transpose();
+  P_.bottomRightCorner<3, 3>() = P_at * from_tilt.transpose();
+}
+
 void AttitudeEskf::Propagate(const ImuStep& step) {
   const Quaterniond half = ExpSO3(0.5 * CorrectedTurn_S(step));
   const Quaterniond q_WS_mid = q_WS_ * half;

@@ -30,6 +30,8 @@ class AttitudeEskf final : public AttitudeKalman<9> {
  public:
   using AttitudeKalman::AttitudeKalman;
 
+  /// The force that is taken for gravity may hold an acceleration: da = -g up x dtheta of the tilt's error.
+  void AlignTilt(const Vector3d& f_S_m_s2) override;
   void Propagate(const ImuStep& step) override;
   void UpdateGravity(const ImuStep& step, double motion_acceleration_sd_m_s2) override;
 

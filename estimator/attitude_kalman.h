@@ -53,8 +53,7 @@ class AttitudeKalman : public AttitudeFilter {
                                                          params.gyro_bias_sd_rad_s);
   }
 
-  void AlignTilt(const Vector3d& f_S_m_s2) final {
-    constexpr double kTiltSd_rad = 0.05;
+  void AlignTilt(const Vector3d& f_S_m_s2) override {
     Align(CalcTilt(f_S_m_s2), Vector3d(kTiltSd_rad, kTiltSd_rad, std::numbers::pi));
   }
   /// Starts from an attitude known with these standard deviations about the axes of W.
@@ -91,6 +90,7 @@ class AttitudeKalman : public AttitudeFilter {
 
  protected:
   static constexpr int kBias = 3;
+  static constexpr double kTiltSd_rad = 0.1;  // a launch at 1 m/s^2 taken for gravity
 
   /// The step's rotation vector with the bias taken out; sets the rate.
   Vector3d CorrectedTurn_S(const ImuStep& step) {
