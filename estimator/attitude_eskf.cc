@@ -36,14 +36,15 @@ void AttitudeEskf::PropagateAcceleration(double dt_s, double sd_m_s2) {
 }
 
 void AttitudeEskf::HoldStill() {
-  const Matrix3d S = P_.bottomRightCorner<3, 3>();
-  if (!(S.trace() > 0)) return;
-  const Gain PHt = P_.rightCols<3>();
-  const Gain K = PHt * S.inverse();
-  TakeSymmetric<9, 3>(P_, 0.5 * PHt, K);
+  for (int i = 0; i < 3; ++i) {
+    const double variance = P_(kAcceleration + i, kAcceleration + i);
+    if (!(variance > 0)) continue;
+    const State K = P_.col(kAcceleration + i) / variance;
+    TakeSymmetric<9, 1>(P_, 0.5 * variance * K, K);
+    Correct(K * -acceleration_W_m_s2_[i]);
+  }
   P_.rightCols<3>().setZero();
   P_.bottomRows<3>().setZero();
-  Correct(K * -acceleration_W_m_s2_);
   acceleration_W_m_s2_.setZero();
 }
 
