@@ -28,7 +28,11 @@ void AttitudeEskf::Propagate(const ImuStep& step) {
 }
 
 void AttitudeEskf::PropagateAcceleration(double dt_s, double sd_m_s2) {
-  const double c = std::exp(-dt_s / params_.motion_correlation_s);
+  if (dt_s != decay_dt_s_) {
+    decay_dt_s_ = dt_s;
+    decay_ = std::exp(-dt_s / params_.motion_correlation_s);
+  }
+  const double c = decay_;
   acceleration_W_m_s2_ *= c;
   P_.rightCols<3>() *= c;
   P_.bottomRows<3>() *= c;
@@ -85,7 +89,7 @@ void AttitudeEskf::UpdateGravity(const ImuStep& step, double motion_acceleration
     S_inverse = S.inverse();
   }
   const Gain K = PHt.lazyProduct(S_inverse);
-  TakeSymmetric<9, 3>(P_, 0.5 * PHt, K);
+  TakeOptimal<9, 3>(P_, PHt, K);
   Correct(K * z);
 }
 

@@ -53,6 +53,7 @@ class AttitudeEskf final : public AttitudeKalman<9> {
 
   Quaterniond q_WS_force_ = Quaterniond::Identity();  // where the step's specific force is given
   Vector3d acceleration_W_m_s2_ = Vector3d::Zero();
+  double decay_dt_s_ = 0, decay_ = 1;  // of the last step's length
 };
 
 }  // namespace piperun::estimator

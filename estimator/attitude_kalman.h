@@ -31,6 +31,19 @@ void TakeSymmetric(Eigen::Matrix<double, n, n>& P, const Eigen::Matrix<double, n
   }
 }
 
+/// P - K (P H^T)^T for the optimal gain K = P H^T S^-1, from one triangle.
+template <int n, int m>
+void TakeOptimal(Eigen::Matrix<double, n, n>& P, const Eigen::Matrix<double, n, m>& PHt,
+                 const Eigen::Matrix<double, n, m>& K) {
+  for (int j = 0; j < n; ++j) {
+    for (int i = j; i < n; ++i) {
+      double sum = P(i, j);
+      for (int l = 0; l < m; ++l) sum -= K(i, l) * PHt(j, l);
+      P(i, j) = P(j, i) = sum;
+    }
+  }
+}
+
 /// What Kalman filters on SO(3) x R^n have in common: nominal attitude q_WS and gyro bias b, covariance P of
 /// the error [dtheta, db, ...] with R_true = Exp(dtheta) R, dtheta in W, and b_true = b + db; the corrections
 /// that heading and rest give, and the gates.
