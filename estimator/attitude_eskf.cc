@@ -5,6 +5,20 @@
 
 namespace piperun::estimator {
 
+void AttitudeEskf::AlignTilt(const Vector3d& f_S_m_s2) {
+  AttitudeKalman::AlignTilt(f_S_m_s2);
+  acceleration_W_m_s2_.setZero();
+  Matrix3d from_tilt = Matrix3d::Zero();
+  from_tilt(0, 1) = g_m_s2_;
+  from_tilt(1, 0) = -g_m_s2_;
+  const Matrix3d P_at = from_tilt * Covariance_W_rad2();
+  P_.bottomRows<3>().setZero();
+  P_.rightCols<3>().setZero();
+  P_.bottomLeftCorner<3, 3>() = P_at;
+  P_.topRightCorner<3, 3>() = P_at.transpose();
+  P_.bottomRightCorner<3, 3>() = P_at * from_tilt.transpose();
+}
+
 void AttitudeEskf::Propagate(const ImuStep& step) {
   const Quaterniond half = ExpSO3(0.5 * CorrectedTurn_S(step));
   const Quaterniond q_WS_mid = q_WS_ * half;
@@ -14,7 +28,11 @@ void AttitudeEskf::Propagate(const ImuStep& step) {
 }
 
 void AttitudeEskf::PropagateAcceleration(double dt_s, double sd_m_s2) {
-  const double c = std::exp(-dt_s / params_.motion_correlation_s);
+  if (dt_s != decay_dt_s_) {
+    decay_dt_s_ = dt_s;
+    decay_ = std::exp(-dt_s / params_.motion_correlation_s);
+  }
+  const double c = decay_;
   acceleration_W_m_s2_ *= c;
   P_.rightCols<3>() *= c;
   P_.bottomRows<3>() *= c;
@@ -22,14 +40,15 @@ void AttitudeEskf::PropagateAcceleration(double dt_s, double sd_m_s2) {
 }
 
 void AttitudeEskf::HoldStill() {
-  const Matrix3d S = P_.bottomRightCorner<3, 3>();
-  if (!(S.trace() > 0)) return;
-  const Gain PHt = P_.rightCols<3>();
-  const Gain K = PHt * S.inverse();
-  TakeSymmetric<9, 3>(P_, 0.5 * PHt, K);
+  for (int i = 0; i < 3; ++i) {
+    const double variance = P_(kAcceleration + i, kAcceleration + i);
+    if (!(variance > 0)) continue;
+    const State K = P_.col(kAcceleration + i) / variance;
+    TakeSymmetric<9, 1>(P_, 0.5 * variance * K, K);
+    Correct(K * -acceleration_W_m_s2_[i]);
+  }
   P_.rightCols<3>().setZero();
   P_.bottomRows<3>().setZero();
-  Correct(K * -acceleration_W_m_s2_);
   acceleration_W_m_s2_.setZero();
 }
 
@@ -70,7 +89,7 @@ void AttitudeEskf::UpdateGravity(const ImuStep& step, double motion_acceleration
     S_inverse = S.inverse();
   }
   const Gain K = PHt.lazyProduct(S_inverse);
-  TakeSymmetric<9, 3>(P_, 0.5 * PHt, K);
+  TakeOptimal<9, 3>(P_, PHt, K);
   Correct(K * z);
 }
 

@@ -30,6 +30,8 @@ class AttitudeEskf final : public AttitudeKalman<9> {
  public:
   using AttitudeKalman::AttitudeKalman;
 
+  /// The force that is taken for gravity may hold an acceleration: da = -g up x dtheta of the tilt's error.
+  void AlignTilt(const Vector3d& f_S_m_s2) override;
   void Propagate(const ImuStep& step) override;
   void UpdateGravity(const ImuStep& step, double motion_acceleration_sd_m_s2) override;
 
@@ -51,6 +53,7 @@ class AttitudeEskf final : public AttitudeKalman<9> {
 
   Quaterniond q_WS_force_ = Quaterniond::Identity();  // where the step's specific force is given
   Vector3d acceleration_W_m_s2_ = Vector3d::Zero();
+  double decay_dt_s_ = 0, decay_ = 1;  // of the last step's length
 };
 
 }  // namespace piperun::estimator

@@ -47,7 +47,7 @@ void AttitudeIekf::UpdateGravity(const ImuStep& step, double motion_acceleration
     S_inverse = S.inverse();
   }
   const Matrix6x2d K = PHt.lazyProduct(S_inverse);
-  TakeSymmetric<6, 2>(P_, 0.5 * PHt, K);
+  TakeOptimal<6, 2>(P_, PHt, K);
   Correct(K * z);
 }
 

@@ -31,6 +31,19 @@ void TakeSymmetric(Eigen::Matrix<double, n, n>& P, const Eigen::Matrix<double, n
   }
 }
 
+/// P - K (P H^T)^T for the optimal gain K = P H^T S^-1, from one triangle.
+template <int n, int m>
+void TakeOptimal(Eigen::Matrix<double, n, n>& P, const Eigen::Matrix<double, n, m>& PHt,
+                 const Eigen::Matrix<double, n, m>& K) {
+  for (int j = 0; j < n; ++j) {
+    for (int i = j; i < n; ++i) {
+      double sum = P(i, j);
+      for (int l = 0; l < m; ++l) sum -= K(i, l) * PHt(j, l);
+      P(i, j) = P(j, i) = sum;
+    }
+  }
+}
+
 /// What Kalman filters on SO(3) x R^n have in common: nominal attitude q_WS and gyro bias b, covariance P of
 /// the error [dtheta, db, ...] with R_true = Exp(dtheta) R, dtheta in W, and b_true = b + db; the corrections
 /// that heading and rest give, and the gates.
@@ -53,8 +66,7 @@ class AttitudeKalman : public AttitudeFilter {
                                                          params.gyro_bias_sd_rad_s);
   }
 
-  void AlignTilt(const Vector3d& f_S_m_s2) final {
-    constexpr double kTiltSd_rad = 0.05;
+  void AlignTilt(const Vector3d& f_S_m_s2) override {
     Align(CalcTilt(f_S_m_s2), Vector3d(kTiltSd_rad, kTiltSd_rad, std::numbers::pi));
   }
   /// Starts from an attitude known with these standard deviations about the axes of W.
@@ -91,6 +103,7 @@ class AttitudeKalman : public AttitudeFilter {
 
  protected:
   static constexpr int kBias = 3;
+  static constexpr double kTiltSd_rad = 0.1;  // a launch at 1 m/s^2 taken for gravity
 
   /// The step's rotation vector with the bias taken out; sets the rate.
   Vector3d CorrectedTurn_S(const ImuStep& step) {

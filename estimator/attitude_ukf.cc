@@ -97,7 +97,7 @@ void AttitudeUkf::UpdateGravity(const ImuStep& step, double motion_acceleration_
   }
   const Eigen::Matrix<double, 6, 3> cross = CalcSpread<6, 3>(points, up);
   const Eigen::Matrix<double, 6, 3> K = cross * S_inverse;
-  TakeSymmetric<6, 3>(P_, 0.5 * cross, K);
+  TakeOptimal<6, 3>(P_, cross, K);
   Correct(K * z);
 }
 
