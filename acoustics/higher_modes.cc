@@ -26,10 +26,11 @@ double CalcDistance(int row) {
   return distances[static_cast<std::size_t>(row)];
 }
 
-/// The row at or below a distance, with parts of rows.
+/// The row at or below a distance, with parts of rows. Range: below the last row's distance.
 double FindRow(double radii) {
   if (radii <= kFirstDistance) return radii / kFirstDistance;
-  const double row = 1 + std::floor(std::log(radii / kFirstDistance) / std::log(kGrowth));
+  const double row =
+      std::min(kDistances - 1.0, 1 + std::floor(std::log(radii / kFirstDistance) / std::log(kGrowth)));
   const double begin = CalcDistance(static_cast<int>(row));
   return row + (radii - begin) / (begin * (kGrowth - 1));
 }
@@ -102,10 +103,10 @@ void HigherModeTable::AddWave(const ModeWave& wave, double share, std::size_t bi
 
 void HigherModeTable::AddTo(std::span<float> psd, std::span<const float> at_hole, double z_m,
                             float share) const {
-  if (rows_.empty()) return;
-  const double place = FindRow(std::abs(z_m) / radius_m_);
+  const double radii = std::abs(z_m) / radius_m_;
+  if (rows_.empty() || radii >= CalcDistance(kDistances)) return;
+  const double place = FindRow(radii);
   const auto row = static_cast<std::size_t>(place);
-  if (row + 1 >= rows_.size()) return;
   const auto far = static_cast<float>(place - static_cast<double>(row));
   const float* __restrict near_n = rows_[row].data(), * __restrict far_n = rows_[row + 1].data();
   const float* __restrict hole = at_hole.data() + first_bin_;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "acoustics/level.h"
@@ -159,6 +160,24 @@ TEST(HigherModes, AreNotToldInSoftWalls) {
   std::vector<float> psd(512, 0);
   HigherModeTable(wave, 0.9, 15.625, 512).AddTo(psd, std::vector<float>(512, 1), 0.1, 1);
   for (const float x : psd) EXPECT_EQ(x, 0);
+}
+
+TEST(HigherModeTable, AddsNothingFarAway) {
+  const HigherModeTable table(MakeSteel600(), 1, 15.625, 513);
+  const std::vector<float> at_hole(513, 1);
+  double before = std::numeric_limits<double>::infinity();
+  for (const double z_m : {1.0, 10.0, 100.0, 140.0, 144.0, 1e3, 1e6}) {
+    std::vector<float> psd(513, 0);
+    table.AddTo(psd, at_hole, z_m, 1);
+    double sum = 0;
+    for (const float p : psd) {
+      EXPECT_GE(p, 0);
+      sum += static_cast<double>(p);
+    }
+    EXPECT_LE(sum, before) << z_m;
+    before = sum;
+    EXPECT_TRUE(z_m < 143 || sum == 0) << z_m;  // 480 radii
+  }
 }
 
 TEST(HigherModeTable, IsEmptyBelowTheFirstCutOn) {

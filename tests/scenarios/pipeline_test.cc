@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -298,10 +300,11 @@ TEST(Run, ALeakOnAClosedDeadPipeIsSilentAndTheRunSaysSo) {
   const TemporaryFolder folder;
   const RunResult dead = RunInto(MakeClosedDeadEnd("0.70"), folder / "dead");
   EXPECT_EQ(dead.status, "time_limit");
-  ASSERT_EQ(dead.warnings.size(), 2u);
-  EXPECT_EQ(dead.warnings[0], "node TAP1: closed off from all water: its demand is not served");
-  EXPECT_EQ(dead.warnings[1], "leak L1: closed dead pipe with no pressure: no sound");
-  EXPECT_NE(FileText(folder / "dead/run.json").find(dead.warnings[1]), std::string::npos);
+  for (const char* warning : {"node TAP1: closed off from all water: its demand is not served",
+                              "leak L1: closed dead pipe with no pressure: no sound"}) {
+    EXPECT_EQ(std::ranges::count(dead.warnings, warning), 1) << warning;
+    EXPECT_NE(FileText(folder / "dead/run.json").find(warning), std::string::npos);
+  }
   Scenario without = MakeClosedDeadEnd("0.70");
   without.leaks.clear();
   RunInto(without, folder / "without");
