@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "acoustics/higher_modes.h"
 #include "base/number.h"
 
 namespace piperun::scenarios {
@@ -38,26 +38,50 @@ std::string NamePipes(const std::vector<std::string>& ids) {
 
 std::string Hertz(double f_Hz) { return FormatNumber(std::round(f_Hz)) + " Hz"; }
 
+double CalcLawLimit_Hz(const acoustics::PipeWave& wave) { return kLawHoldsTo * wave.ring_frequency_Hz; }
+double CalcCutOn_Hz(const acoustics::PipeWave& wave) { return wave.cut_on_Hz; }
+
+/// The lowest of the limits that the record goes beyond.
+struct Limit {
+  double f_Hz = 0;
+  const PipeClass* lowest = nullptr;
+  std::size_t pipes = 0;  ///< all in which it goes beyond theirs
+};
+
+std::optional<Limit> FindLimit(const std::vector<PipeClass>& classes, double top_Hz,
+                               double (*calc_limit_Hz)(const acoustics::PipeWave&)) {
+  Limit limit{top_Hz};
+  for (const PipeClass& c : classes) {
+    const double f_Hz = calc_limit_Hz(*c.wave);
+    if (top_Hz <= f_Hz) continue;
+    limit.pipes += c.ids.size();
+    if (f_Hz < limit.f_Hz) limit.f_Hz = f_Hz, limit.lowest = &c;
+  }
+  return limit.lowest ? std::optional(limit) : std::nullopt;
+}
+
+/// "527 Hz in P1, P2, P3 and 12 more, higher in 4 others"
+std::string Describe(const Limit& limit) {
+  const std::size_t others = limit.pipes - limit.lowest->ids.size();
+  return Hertz(limit.f_Hz) + " in " + NamePipes(limit.lowest->ids) +
+         (others > 0 ? ", higher in " + std::to_string(others) + " others" : "");
+}
+
 }  // namespace
 
 std::vector<std::string> WarnOfSoundRange(const Network& network, const acoustics::AcousticScene& scene,
                                           double top_Hz) {
+  const std::vector<PipeClass> classes = ListClasses(network, scene);
   std::vector<std::string> warnings;
-  for (const PipeClass& c : ListClasses(network, scene)) {
-    const double ring_Hz = c.wave->ring_frequency_Hz, holds_Hz = kLawHoldsTo * ring_Hz;
-    const bool soft = c.wave->X > acoustics::kLargestCompliance;
-    const std::string where = "sound: in " + NamePipes(c.ids);
-    if (top_Hz > holds_Hz) {
-      warnings.push_back(where + " the wave's law holds to " + Hertz(holds_Hz) + ", " +
-                         FormatNumber(kLawHoldsTo) + " of the ring frequency " + Hertz(ring_Hz) +
-                         "; the record goes to " + Hertz(top_Hz) + ", where true loss is higher");
-    }
-    if (top_Hz > c.wave->cut_on_Hz) {
-      warnings.push_back(where + " the plane wave is alone to " + Hertz(c.wave->cut_on_Hz) +
-                         ", the first cut-on; the record goes to " + Hertz(top_Hz) +
-                         (soft ? ", and in a wall this soft no higher modes are told"
-                               : ", and higher modes are heard only from leaks in the ball's own pipe"));
-    }
+  const std::string record = "sound: the record goes to " + Hertz(top_Hz);
+  if (const auto law = FindLimit(classes, top_Hz, CalcLawLimit_Hz)) {
+    warnings.push_back(record + ", the law of the wall to " + FormatNumber(kLawHoldsTo) +
+                       " of the ring frequency: " + Describe(*law) + "; beyond, true loss is higher");
+  }
+  if (const auto cut_on = FindLimit(classes, top_Hz, CalcCutOn_Hz)) {
+    warnings.push_back(record + ", the plane wave is alone to the first cut-on: " + Describe(*cut_on) +
+                       "; beyond, higher modes are heard from leaks in the ball's own pipe if its wall is "
+                       "stiffer than the water, else none");
   }
   return warnings;
 }

@@ -86,7 +86,7 @@ TEST(PipeSound, TheCrewsMapSaysNothingOfTheSoil) {
   EXPECT_EQ(input.map.network.pipes[0].sound, PipeSoundParams());
 }
 
-TEST(SoundRange, IsWarnedOfOnceForPipesOfOneKindWithTheNumbers) {
+TEST(SoundRange, IsWarnedOfOnceWithTheNumbers) {
   const auto warnings = Assemble(MakeSmallScenario())->pipeline->warnings;
   const auto says = [&](const std::string& what) {
     return std::count_if(warnings.begin(), warnings.end(),
@@ -95,10 +95,10 @@ TEST(SoundRange, IsWarnedOfOnceForPipesOfOneKindWithTheNumbers) {
   // f_ring = sqrt(3.5e9/(1400 (1 - 0.16)))/(2 pi 0.07875) = 3486.6 Hz; 0.15 of it 523 Hz;
   // cut-on 1.8412 x 1447.3/(2 pi 0.075) = 5655 Hz
   EXPECT_EQ(
-      says("sound: in P1 the wave's law holds to 523 Hz, 0.15 of the ring frequency 3487 Hz; the record "
-           "goes to 8000 Hz"),
+      says("sound: the record goes to 8000 Hz, the law of the wall to 0.15 of the ring frequency: 523 Hz "
+           "in P1;"),
       1);
-  EXPECT_EQ(says("the plane wave is alone to 565"), 1);
+  EXPECT_EQ(says("to the first cut-on: 565"), 1);
   const auto count = [](double top_Hz) {
     const auto assembly = Assemble(MakeSmallScenario());
     return WarnOfSoundRange(*assembly->network(), assembly->scene, top_Hz).size();
@@ -106,6 +106,24 @@ TEST(SoundRange, IsWarnedOfOnceForPipesOfOneKindWithTheNumbers) {
   EXPECT_EQ(count(520), 0u);
   EXPECT_EQ(count(530), 1u);
   EXPECT_EQ(count(5700), 2u);
+}
+
+TEST(SoundRange, NamesThePipesOfTheLowestLimitAndCountsTheOthers) {
+  Scenario scenario = MakeSmallScenario({"network.pipes.P1.diameter_mm=300"});
+  const auto small = Assemble(MakeSmallScenario()), large = Assemble(scenario);
+  acoustics::AcousticScene both = small->scene;
+  both.network.pipes.push_back(large->scene.network.pipes[0]);
+  both.listening_pipes = {0, 0, 0, 0, 0, 1};
+  PipeSpec first, second;
+  first.id = "P1", first.from = "A", first.to = "B", first.diameter_m = 0.15, first.wall_thickness_m = 0.0075;
+  second.id = "P2", second.from = "B", second.to = "C", second.diameter_m = 0.3,
+  second.wall_thickness_m = 0.0075;
+  const Network network({{"A", {0, 0, 0}}, {"B", {6, 0, 0}}, {"C", {12, 0, 0}}}, {first, second});
+  const auto warnings = WarnOfSoundRange(network, both, 8000);
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_NE(warnings[1].find(" in P2, higher in 5 others"), std::string::npos) << warnings[1];
+  both.listening_pipes = {0, 0, 0, 0, 0};
+  EXPECT_NE(WarnOfSoundRange(network, both, 8000)[1].find(" in P1, P1, P1 and 2 more;"), std::string::npos);
 }
 
 }  // namespace
