@@ -22,6 +22,9 @@ class SoundFile::Impl {
   }
   double rate_Hz() const { return info_.samplerate; }
   std::int64_t frames() const { return info_.frames; }
+  void SeekTo(std::int64_t frame) {
+    Demand(sf_seek(file_.get(), frame, SEEK_SET) == frame, "the frame is in the file");
+  }
   std::size_t Read(std::span<double> samples) {
     return static_cast<std::size_t>(
         sf_readf_double(file_.get(), samples.data(), static_cast<sf_count_t>(samples.size())));
@@ -41,6 +44,7 @@ SoundFile::SoundFile(SoundFile&&) noexcept = default;
 
 double SoundFile::rate_Hz() const { return impl_->rate_Hz(); }
 std::int64_t SoundFile::frames() const { return impl_->frames(); }
+void SoundFile::SeekTo(std::int64_t frame) { impl_->SeekTo(frame); }
 std::size_t SoundFile::Read(std::span<double> samples) { return impl_->Read(samples); }
 
 }  // namespace piperun::acoustics

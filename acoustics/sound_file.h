@@ -18,6 +18,8 @@ class SoundFile {
 
   double rate_Hz() const;
   std::int64_t frames() const;
+  /// Reads on from there. Range: 0 to frames().
+  void SeekTo(std::int64_t frame);
   /// Fills `samples` from where the last call ended and returns how many there were; 0 at the end.
   std::size_t Read(std::span<double> samples);
 

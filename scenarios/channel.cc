@@ -82,6 +82,11 @@ const Measurement* HydrophoneChannel::Take(const sim::TruthWindow& window) {
   return &measurement_;
 }
 
+std::int64_t HydrophoneChannel::FindSample(TrueTime t) const {
+  return static_cast<std::int64_t>(
+      std::floor(Seconds(clock_.ToRobot(t) - StampOf(0)) * hydrophone_.rate().Hz()));
+}
+
 double CalcContactTime_s(const sim::ContactEvent& event, bool soft_ball, double rigid_s) {
   if (!soft_ball || !(event.peak_force_N > 0)) return rigid_s;
   return std::numbers::pi / 2 * event.impulse_W_N_s.norm() / event.peak_force_N;

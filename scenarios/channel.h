@@ -63,6 +63,8 @@ class HydrophoneChannel : public Channel {
   void Hear(const sim::ContactEvent& event) override;
   Duration history() const override;
   const Measurement* Take(const sim::TruthWindow& window) override;
+  /// The sample that is taken at a true time or next before it.
+  std::int64_t FindSample(TrueTime t) const;
   acoustics::Hydrophone& hydrophone() { return hydrophone_; }
   const acoustics::Hydrophone& hydrophone() const { return hydrophone_; }
 

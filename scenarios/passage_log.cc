@@ -6,14 +6,14 @@
 namespace piperun::scenarios {
 namespace {
 
-constexpr double kLow_Hz = 1000, kHigh_Hz = 4000;
 constexpr double kLookRate_Hz = 10;
 
 /// The first that hears any of the band.
 acoustics::Hydrophone* FindListener(const Assembly& assembly) {
   for (const auto& channel : assembly.channels) {
     auto* hydrophone = dynamic_cast<HydrophoneChannel*>(channel.get());
-    if (hydrophone && hydrophone->hydrophone().rate().Hz() > 2 * kLow_Hz) return &hydrophone->hydrophone();
+    if (hydrophone && hydrophone->hydrophone().rate().Hz() > 2 * kPassageLow_Hz)
+      return &hydrophone->hydrophone();
   }
   return nullptr;
 }
@@ -71,8 +71,8 @@ void PassageLog::Listen(const sim::TruthState& state) {
 }
 
 void PassageLog::CalcSnr_dB(const sim::TruthState& state) {
-  const double high_Hz = std::min(kHigh_Hz, hydrophone_->rate().Hz() / 2);
-  hydrophone_->CalcBandPower(CalcListener(state, *assembly_.network()), kLow_Hz, high_Hz, band_Pa2_);
+  const double high_Hz = std::min(kPassageHigh_Hz, hydrophone_->rate().Hz() / 2);
+  hydrophone_->CalcBandPower(CalcListener(state, *assembly_.network()), kPassageLow_Hz, high_Hz, band_Pa2_);
   double noise_Pa2 = band_Pa2_.back();
   for (std::size_t i = 0; i < assembly_.scene.leaks.size(); ++i)
     if (assembly_.scene.leaks[i].role != acoustics::Role::kLeak) noise_Pa2 += band_Pa2_[i];

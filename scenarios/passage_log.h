@@ -10,6 +10,9 @@
 
 namespace piperun::scenarios {
 
+/// Where a leak is listened for.
+inline constexpr double kPassageLow_Hz = 1000, kPassageHigh_Hz = 4000;
+
 /// A span of true time.
 struct HeardSpan {
   TrueTime begin{}, end{};

@@ -124,13 +124,13 @@ class RunLoop {
     RunResult result;
     result.status = Name(assembly_.motion->status());
     result.duration_s = Seconds(assembly_.motion->state().time);
-    result.leaks = truth_.Close();
+    const std::optional<StemSnr> stems = CloseStems();
+    result.leaks = truth_.Close(stems ? &*stems : nullptr);
     result.contacts = truth_.contacts();
     for (std::size_t i = 0; i < writers_.size(); ++i) {
       const auto* hydrophone = dynamic_cast<const HydrophoneChannel*>(assembly_.channels[i].get());
       if (hydrophone) writers_[i]->CountDropped(hydrophone->hydrophone().dropped_samples());
       writers_[i]->Close();
-      if (stems_[i]) stems_[i]->Close();
     }
     result.estimators = bank_.Finish(result.leaks, scenario_.score.match_radius_m,
                                      [this] { return OpenTruth(truth_file_, assembly_.clock); });
@@ -138,6 +138,19 @@ class RunLoop {
   }
 
  private:
+  /// What the first of them tell.
+  std::optional<StemSnr> CloseStems() {
+    std::optional<StemSnr> snr;
+    for (std::size_t i = 0; i < stems_.size(); ++i) {
+      if (!stems_[i]) continue;
+      stems_[i]->Close();
+      if (!snr)
+        snr.emplace(assembly_, dynamic_cast<const HydrophoneChannel&>(*assembly_.channels[i]),
+                    stems_[i]->folder());
+    }
+    return snr;
+  }
+
   void Tell(std::span<const sim::ContactEvent> events) {
     for (const sim::ContactEvent& event : events) {
       truth_.Record(event);

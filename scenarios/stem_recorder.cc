@@ -5,7 +5,8 @@
 namespace piperun::scenarios {
 
 StemRecorder::StemRecorder(const acoustics::Hydrophone& hydrophone, double longest_s,
-                           const std::filesystem::path& folder) {
+                           const std::filesystem::path& folder)
+    : folder_(folder) {
   const double rate_Hz = hydrophone.rate().Hz();
   const acoustics::AudioFormat format{acoustics::AudioContainer::kFloatWav, std::llround(rate_Hz), 24};
   for (const std::string& name : hydrophone.StemNames())

@@ -20,8 +20,10 @@ class StemRecorder {
   /// What the hydrophone rendered last.
   void Write(const acoustics::Hydrophone& hydrophone);
   void Close();
+  const std::filesystem::path& folder() const { return folder_; }
 
  private:
+  std::filesystem::path folder_;
   std::vector<acoustics::AudioWriter> files_;
 };
 

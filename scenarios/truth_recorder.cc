@@ -14,7 +14,7 @@ constexpr std::string_view kGroundtruthHeader =
     "v_RS_R_x [m s^-1],v_RS_R_y [m s^-1],v_RS_R_z [m s^-1],b_w_RS_S_x [rad s^-1],b_w_RS_S_y [rad s^-1],"
     "b_w_RS_S_z [rad s^-1],b_a_RS_S_x [m s^-2],b_a_RS_S_y [m s^-2],b_a_RS_S_z [m s^-2]\n";
 constexpr std::string_view kLeaksHeader = "id,pipe,s_m,chainage_m,x_m,y_m,z_m,flow_m3_s,t_cpa_ns,snr_dB\n";
-constexpr std::string_view kLabelsHeader = "id,begin_ns,t_cpa_ns,end_ns,snr_dB\n";
+constexpr std::string_view kLabelsHeader = "id,begin_ns,t_cpa_ns,end_ns,snr_dB,snr_stems_dB\n";
 constexpr std::string_view kFeaturesHeader = "id,kind,pipe,s_m,chainage_m\n";
 
 std::int64_t Nanoseconds(TrueTime t) { return t.time_since_epoch().count(); }
@@ -33,14 +33,15 @@ void WriteLeak(OutputFile& file, const TrueLeak& leak) {
                << leak.p_W << leak.flow_m3_s << leak.t_cpa_ns << leak.snr_dB << kEndOfRow;
 }
 
-void WriteLabel(OutputFile& file, const TrueLeak& leak, const Passage& passage) {
+void WriteLabel(OutputFile& file, const TrueLeak& leak, const Passage& passage,
+                std::optional<double> snr_stems_dB) {
   std::optional<std::int64_t> begin_ns, end_ns;
   if (passage.heard) {
     begin_ns = Nanoseconds(passage.heard->begin);
     end_ns = Nanoseconds(passage.heard->end);
   }
   CsvRow(file) << std::string_view(leak.id) << begin_ns << leak.t_cpa_ns << end_ns << leak.snr_dB
-               << kEndOfRow;
+               << snr_stems_dB << kEndOfRow;
 }
 
 /// Of the wall features, by index.
@@ -126,7 +127,7 @@ void TruthRecorder::WriteFeatures() const {
   file.Close();
 }
 
-std::vector<TrueLeak> TruthRecorder::Close() {
+std::vector<TrueLeak> TruthRecorder::Close(const StemSnr* stems) {
   ball_.Close();
   groundtruth_.Close();
   if (!assembly_.wall_features.empty()) WriteFeatures();
@@ -145,7 +146,7 @@ std::vector<TrueLeak> TruthRecorder::Close() {
     if (passage && passage->passed) {
       leak.t_cpa_ns = Nanoseconds(*passage->passed);
       leak.snr_dB = passage->snr_dB;
-      WriteLabel(labels, leak, *passage);
+      WriteLabel(labels, leak, *passage, stems ? stems->Measure_dB(i, *passage->passed) : std::nullopt);
     }
     WriteLeak(file, leak);
     leaks.push_back(std::move(leak));

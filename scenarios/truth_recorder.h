@@ -9,6 +9,7 @@
 #include "scenarios/output_file.h"
 #include "scenarios/passage_log.h"
 #include "scenarios/score.h"
+#include "scenarios/stem_snr.h"
 #include "sim/truth.h"
 
 namespace piperun::scenarios {
@@ -29,8 +30,8 @@ class TruthRecorder {
   /// Of the rows written so far; nothing: no pipes.
   std::optional<ContactSummary> contacts() const;
   /// Completes the files, writes leaks.csv, labels.csv (and features.csv, where there are any) and returns
-  /// what leaks.csv says.
-  std::vector<TrueLeak> Close();
+  /// what leaks.csv says. `stems`: those that are kept, measured for labels.csv; null: none are.
+  std::vector<TrueLeak> Close(const StemSnr* stems);
 
  private:
   void WriteRow(const sim::TruthState& state);

@@ -46,8 +46,8 @@ TemporaryFolder* StemsRun::folder_ = nullptr;
 std::vector<TrueLeak> StemsRun::leaks_;
 
 TEST_F(StemsRun, ChangesNothingButThatTheStemsAreThere) {
-  for (const char* file : {"mav0/hydrophone0/audio.wav", "truth/leaks.csv", "truth/labels.csv",
-                           "estimates/ekf/leaks.csv", "estimator_input.yaml"}) {
+  for (const char* file :
+       {"mav0/hydrophone0/audio.wav", "truth/leaks.csv", "estimates/ekf/leaks.csv", "estimator_input.yaml"}) {
     EXPECT_EQ(FileText(*folder_ / "plain" / file), FileText(*folder_ / "kept" / file)) << file;
   }
   EXPECT_FALSE(fs::exists(*folder_ / "plain/truth/stems"));
@@ -77,7 +77,7 @@ std::vector<std::vector<std::string>> ReadLabels(const fs::path& path) {
   std::ifstream file(path);
   std::string line, field;
   std::getline(file, line);
-  EXPECT_EQ(line, "id,begin_ns,t_cpa_ns,end_ns,snr_dB");
+  EXPECT_EQ(line, "id,begin_ns,t_cpa_ns,end_ns,snr_dB,snr_stems_dB");
   std::vector<std::vector<std::string>> rows;
   while (std::getline(file, line)) {
     std::istringstream fields(line);
@@ -97,6 +97,25 @@ TEST_F(StemsRun, LabelsThePassageAndTheSpanInWhichTheLeakIsHeard) {
   EXPECT_LE(begin, passed);
   EXPECT_GE(end, passed);
   EXPECT_EQ(std::stod(rows[0][4]), *leaks_[0].snr_dB);
+}
+
+TEST_F(StemsRun, MeasuresTheSignalToNoiseRatioInTheStems) {
+  const auto plain = ReadLabels(*folder_ / "plain/truth/labels.csv");
+  EXPECT_EQ(plain[0].size(), 5u);  // nothing behind the last comma
+  const double measured_dB = std::stod(ReadLabels(*folder_ / "kept/truth/labels.csv")[0][5]);
+  // the model's ratio, its power averaged over the half second of the passage, at the ball's 0.46 m/s
+  const auto assembly = Assemble(MakeSmallScenario());
+  const acoustics::HydrophoneParams params;
+  double mean = 0;
+  constexpr int kPlaces = 41;
+  for (int i = 0; i < kPlaces; ++i) {
+    acoustics::ListenerState listener;
+    listener.pipe = 0;
+    listener.s_m = assembly->pipeline->leaks[0].s_m + 0.46 * 0.5 * ((i + 0.5) / kPlaces - 0.5);
+    listener.bore_radius_m = 0.075;
+    mean += std::pow(10, 0.1 * CalcLeakSnr_dB(assembly->scene, 0, params, listener, 1000, 4000)) / kPlaces;
+  }
+  EXPECT_NEAR(measured_dB, 10 * std::log10(mean), 4 * 0.15);
 }
 
 /// A ball in the only pipe of the small scenario, rolling on at 0.5 m/s.
