@@ -128,30 +128,5 @@ TEST(CrossCorrelation, RefusesWhatIsNoPairOfRecords) {
   EXPECT_EQ(key(good.a, good.b, 200, 2000), "accepted");
 }
 
-TEST(CrossSpectra, OfOneRecordWithItselfAreItsDensity) {
-  const RandomStream random(3, "white", 0);
-  std::vector<float> white;
-  double power = 0;
-  for (std::uint64_t i = 0; i < 1 << 16; ++i) {
-    white.push_back(static_cast<float>(random.Normals(i, 0)[0]));
-    power += static_cast<double>(white.back()) * static_cast<double>(white.back());
-  }
-  const CrossSpectra spectra = CalcCrossSpectra(white, white, kRate_Hz, 256);
-  double sum = 0;
-  for (std::size_t k = 0; k < spectra.bins(); ++k) {
-    EXPECT_NEAR(spectra.Coherence(k), 1, 1e-9);
-    sum += spectra.aa[k] * spectra.bin_width_Hz;
-  }
-  EXPECT_NEAR(sum / (power / (1 << 16)), 1, 0.02);  // the window weighs the record's ends less
-}
-
-TEST(CrossSpectra, OfRecordsThatShareNothingHaveTheBiasOfTheirAverages) {
-  const Pair pair = MakePair(0, 0, 5);
-  const CrossSpectra spectra = CalcCrossSpectra(pair.a, pair.b, kRate_Hz, 256);
-  double mean = 0;
-  for (std::size_t k = 1; k + 1 < spectra.bins(); ++k) mean += spectra.Coherence(k) / 127;
-  EXPECT_NEAR(mean * spectra.averages, 1, 4 / std::sqrt(127.0 / 1.5));  // neighbours share through the window
-}
-
 }  // namespace
 }  // namespace piperun::estimator
