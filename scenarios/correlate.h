@@ -50,7 +50,7 @@ Correlation Correlate(const CorrelateOptions& options);
 /// "correlated", "false_alarm", "correlation", "side_peak", "delay_s", "delay_sigma_s", "from_a_m",
 /// "sigma_m", "interval_m" (95 %), "maybe_beyond"}; from "delay_s" on null where nothing is correlated.
 std::string WriteCorrelationJson(const Correlation& correlation);
-/// The correlation against lag and place, and the coherence against frequency.
+/// The correlation against the place that its lag stands for, and the coherence against frequency.
 std::string DrawCorrelationSvg(const Correlation& correlation);
 
 }  // namespace piperun::scenarios
